@@ -166,6 +166,12 @@ class StudentAnswer(NamedTuple):
     """A result of the process that runs a student's functions, for the scene to take."""
 
 
+class GoOn(NamedTuple):
+    """Continue the run under another act of a person, such as a drag; an undo of it restores the moment before."""
+
+    act: int
+
+
 class Ask(NamedTuple):
     """Call `read` between two steps, and answer with its result or exception."""
 
@@ -187,7 +193,7 @@ class Advance(NamedTuple):
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # for a scene; the rest is for the loop
-Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | GoOn | Ask | Advance | SceneCommand
 
 
 class RunIdentity(NamedTuple):
@@ -197,6 +203,7 @@ class RunIdentity(NamedTuple):
     act: int = 1  # number of the person's act that began it (`History`)
     before: int = 0  # number of the run that it resumed; 0: it began at the start of the scene
     since: float = 0.0  # [s] of simulated time at that moment
+    placed: int = 1  # number of the act for which cameras are placed: of the run that others, by drags, continue
 
 
 class RunLine:
@@ -236,7 +243,7 @@ class Status(NamedTuple):
     time: float  # [s] simulated
     steps: int
     speed: float  # target real-time factor
-    actual_speed: float  # real-time factor over the last second
+    actual_speed: float | None  # real-time factor over the last second of this run; None while it is not known
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
     halted: str  # reason why the run stopped by itself, or ""
@@ -246,6 +253,7 @@ class Status(NamedTuple):
     unmade: bool = False  # the scene could not begin with its parameters
     pace: float = 1.0  # factor on `speed` requested by the scene: below 1 is slow motion
     restarted: bool = False  # a recent undo had to restart the run, which was not kept
+    outdated: bool = False  # the run stopped with other parameters than the present ones
     faster: str = ""  # advice that makes a capped run faster, or ""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import viser
 
-from app.messages import Command, Pause, Play, StepOnce
+from app.messages import Command, Pause, Play, Status, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
@@ -32,7 +32,7 @@ class Head:
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as shown by the buttons
         self.told: tuple[object, ...] = ()  # a change of it is shown at once
-        self.visited = ""  # preset known to the page, for Back and Forward of the browser
+        self.visited = self.query = ""  # preset known to the page, and its query, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             self.chooser: GuiHandle | None = None
@@ -46,6 +46,8 @@ class Head:
             self.buttons.on_click(self.on_button)
             self.status = gui.add_html("")
             self.remedy = Remedy(gui, "Use {} and start again", settings.follow)
+            self.again: GuiHandle = gui.add_button("Reset with these values", visible=False)
+            self.again.on_click(self.on_again)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
             self.here = gui.add_html("")
@@ -74,6 +76,11 @@ class Head:
             case name:
                 self.settings.post(COMMANDS[name])
 
+    async def on_again(self, event: ViserEvent) -> None:
+        """Start again, for a browser."""
+        if event.client_id is not None:
+            self.settings.reset()
+
     def show_preset(self) -> None:
         """Show the list of presets, with a separate entry if an effective parameter differs from the loaded one.
 
@@ -87,8 +94,11 @@ class Head:
         if self.visited != settings.loaded:
             kind, self.visited = settings.kind, settings.loaded
             preset = self.visited if self.visited in kind.presets else ""
-            query = write_query(kind, settings.params_of(self.visited), preset)
-            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/sharing/visited.js
+            self.query = write_query(kind, settings.params_of(self.visited), preset)
+        # For js/sharing/visited.js and js/panel/acts.js.
+        words = settings.history.undo_words, settings.history.redo_words
+        acts = '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}"></span>'
+        self.here.content = str(fill(acts, self.query, *words))
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are out of date."""
@@ -96,15 +106,19 @@ class Head:
         if running != self.running:
             self.running = running
             self.buttons.options = button_names(running=running)
-        told, self.told = self.told, (running, snapshot.status.halted, visitors)
+        told, self.told = self.told, (running, snapshot.status.halted, snapshot.status.outdated, visitors)
         return self.told != told
 
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
         """Show the state and the figures. busy: [s] that the present tick has taken."""
-        self.status.content = str(status_line(snapshot, busy, visitors))
-        diverged = snapshot.status.halted and not snapshot.status.unmade
-        remedy = self.settings.kind.remedy
-        self.remedy.show(remedy(snapshot) if diverged and remedy is not None else None)
+        kind, status = self.settings.kind, snapshot.status
+        is_stable = kind.is_stable is not None and kind.is_stable(snapshot)
+        self.status.content = str(status_line(snapshot, busy, visitors, is_stable=is_stable))
+        needs_remedy = status.halted and not status.unmade and not (status.outdated and is_stable)
+        self.remedy.show(kind.remedy(snapshot) if needs_remedy and kind.remedy is not None else None)
+        can_reset = status.outdated and (is_stable or kind.is_stable is None)
+        if self.again.visible != can_reset:
+            self.again.visible = can_reset
         self.figures.content = str(fill('<div class="springtide-figures">{}</div>', Html(self.view.figures(snapshot))))
 
     def show_code(self, line: Html) -> None:
@@ -133,20 +147,34 @@ def add_scene_chooser(
     return chooser
 
 
-def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
-    """State of the run, clock, pace, reason for a stop, and number of browsers that share the lab."""
+def stop_words(status: Status, *, is_stable: bool) -> str:
+    """Reason for a stop. It is that of the parameters at that moment, and says nothing of others.
+
+    is_stable: a run with the present parameters would be stable.
+    """
+    if not status.outdated:
+        return status.halted
+    return f"The run stopped with other values.{' These values are stable.' if is_stable else ''} Reset starts again."
+
+
+def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1, *, is_stable: bool = False) -> Html:
+    """State of the run, clock, pace, reason for a stop, and number of browsers that share the lab.
+
+    is_stable: a run with the present parameters would be stable.
+    """
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
     if (s.replayed is not None and not s.halted) or (s.running and s.pace < 1.0):
         state = coloured("Slow motion", WARNING_COLOUR)
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
-    pace = fill("×{:.2f}", s.actual_speed)
-    if s.capped:
-        pace = fill(
-            "{}: ×{:.2f} instead of ×{:g}",
-            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed * s.pace,
-        )  # fmt: skip
+    state = fill('<span class="springtide-state">{}</span>', state)
+    pace = Html()
+    if s.running and s.actual_speed is not None:
+        pace = fill("×{:.2f}", s.actual_speed)
+        if s.capped:
+            slower = coloured("slower than set", WARNING_COLOUR)
+            pace = fill("{}: ×{:.2f} instead of ×{:g}", slower, s.actual_speed, s.speed * s.pace)
     return fill(
         '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
@@ -155,11 +183,13 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         f"Simulated time over real time, at {s.frame_rate:.0f} frames a second" if s.running else "",
         state,
         s.time,
-        fill(' · <span class="springtide-speed">{}</span>', pace) if s.running else "",
+        fill('<span class="springtide-speed"> · {}</span>', pace) if pace else "",
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",
         fill("<br>That run is no longer in memory, so this one starts at t = 0.") if s.restarted else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
-        fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
+        fill('<div class="springtide-stopped" role="alert">{}</div>', stop_words(s, is_stable=is_stable))
+        if s.halted
+        else "",
     )

@@ -1,8 +1,9 @@
-"""Earlier settings, which undo restores, with the acts that began their runs."""
+"""Earlier settings, which undo restores, with the acts that began their runs; and those that redo restores."""
 
 import collections
 import itertools
 import time
+from collections.abc import MutableSequence
 from typing import NamedTuple
 
 from app.messages import BaseParams
@@ -20,6 +21,7 @@ class EarlierSettings(NamedTuple):
     act: int = 1  # number of the act that began their run, which `History.note` sets
     runs: bool = False  # that act has the lab run, as a preset does; set by `History.note` too
     cameras: tuple[ClientCamera, ...] = ()  # of all browsers, before a change that moves them
+    words: str = ""  # the act between them and the later settings
 
 
 class History:
@@ -33,6 +35,7 @@ class History:
         self.act, self.runs = 1, False  # of the present run: at first the opening of the scene
         self.acts = itertools.count(2)  # numbers of those to come
         self.settings: collections.deque[EarlierSettings] = collections.deque(maxlen=MAX_SETTINGS)
+        self.undone: list[EarlierSettings] = []  # the next one to be redone is the last
         self.number, self.changed_at = "", 0.0  # name of the last number changed, and the time [s]
         self.hands: set[int] = set()  # browsers in which a slider is held
 
@@ -46,6 +49,7 @@ class History:
         goes_on = goes_on and (bool(self.hands) or time.monotonic() - self.changed_at <= SAME_CHANGE)
         self.number, self.changed_at = number, time.monotonic()
         if not goes_on:
+            self.undone.clear()
             self.settings.append(before._replace(act=self.act, runs=self.runs))
             if begins:
                 self.act, self.runs = next(self.acts), runs
@@ -62,11 +66,38 @@ class History:
             self.hands.discard(client)
             self.changed_at = time.monotonic()
 
-    def take_last(self) -> EarlierSettings | None:
-        """Settings before the last change in the history, or None. Their run is the present one."""
+    @property
+    def undo_words(self) -> str:
+        """The act that an undo takes back; "" without one."""
+        return self.settings[-1].words if self.settings else ""
+
+    @property
+    def redo_words(self) -> str:
+        """The act that a redo repeats; "" without one."""
+        return self.undone[-1].words if self.undone else ""
+
+    def take_last(self, now: EarlierSettings) -> EarlierSettings | None:
+        """Settings before the last act in the history, or None. Their run is the present one.
+
+        now: the present settings, for a redo.
+        """
+        return self.move(self.settings, self.undone, now)
+
+    def take_next(self, now: EarlierSettings) -> EarlierSettings | None:
+        """Settings after the act that was undone last, or None. now: the present settings, for another undo."""
+        return self.move(self.undone, self.settings, now)
+
+    def move(
+        self,
+        source: MutableSequence[EarlierSettings],
+        target: MutableSequence[EarlierSettings],
+        now: EarlierSettings,
+    ) -> EarlierSettings | None:
+        """Take the last settings from `source`, and put the present ones at the end of `target`."""
         self.number = ""
-        if not self.settings:
+        if not source:
             return None
-        settings = self.settings.pop()
+        settings = source.pop()
+        target.append(now._replace(act=self.act, runs=self.runs, words=settings.words))
         self.act, self.runs = settings.act, settings.runs
         return settings

@@ -8,16 +8,17 @@ from typing import NamedTuple, TypeAlias
 import viser
 
 from app.lab.course import task
-from app.messages import BaseParams, Checkpoint, Reset, Take
+from app.messages import BaseParams, Checkpoint, Command, GoOn, GrabTo, Place, Release, Reset, Take
 from app.panel.history import EarlierSettings, History
 from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
-from sim.parameters import changed_names, clamp_value, effect_of_change, parameters_of
+from sim.parameters import changed_names, clamp_value, effect_of_change, in_words, parameters_of
 
 NO_PARAMS: Mapping[str, BaseParams] = MappingProxyType({})
+CAMERA = "camera"  # a thing that a view places, not a person
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 
 # Takes a scene to show, optional parameters, and an optional camera for one browser.
@@ -59,6 +60,7 @@ class SceneSettings:
         # Name of the last preset loaded; at first the one nearest to the parameters.
         self.loaded = self.nearest_preset(params)
         self.history = History()
+        self.pulling: set[int] = set()  # browsers that drag a point
         self.is_open = True  # False once another scene replaces it
         self.placing: Placing | None = None  # for the viewer; the last one counts
         self.watchers: list[Callable[[], None]] = []  # called after each change, to show it
@@ -120,7 +122,9 @@ class SceneSettings:
         params = dataclasses.replace(self.params, **good)
         is_number = len(changed) == 1 and not known[changed[0]].choices and known[changed[0]].kind is not bool
         begins = restarts or effect_of_change(self.params, params) == "start"
-        act = self.history.note(self.now(), number=changed[0] if is_number and not restarts else "", begins=begins)
+        words = in_words(changed[0]) if len(changed) == 1 else "new values" if changed else "restart"
+        number = changed[0] if is_number and not restarts else ""
+        act = self.history.note(self.now(words), number=number, begins=begins)
         self.take(Take(params, act=act), self.loaded)
 
     def toggle_plots(self) -> None:
@@ -138,7 +142,7 @@ class SceneSettings:
 
     def load_params(self, params: BaseParams, preset: str, cameras: tuple[ClientCamera, ...] = ()) -> None:
         """Take parameters, and restart the scene. preset: their source. cameras: of single browsers."""
-        before = self.now(cameras=client_cameras(self.server))
+        before = self.now(f"preset {preset}", client_cameras(self.server))
         act = self.history.note(before, begins=True, runs=True)
         self.placing = Placing(act, first_view=True, cameras=cameras)
         self.take(Take(params, start=True, act=act), preset)
@@ -162,23 +166,56 @@ class SceneSettings:
 
     def resume(self, params: BaseParams, state: Checkpoint) -> None:
         """Resume the scene from a checkpoint, with its parameters."""
-        act = self.history.note(self.now(), begins=True, runs=True)
+        act = self.history.note(self.now("going back in time"), begins=True, runs=True)
         self.take(Take(params, state=state, act=act), self.loaded)
 
     def begin_with(self, params: BaseParams) -> None:
         """Restart the scene with other parameters, leaving the cameras in place."""
-        act = self.history.note(self.now(), begins=True, runs=True)
+        act = self.history.note(self.now("new values"), begins=True, runs=True)
         self.take(Take(params, start=True, act=act), self.loaded)
 
     def reset(self) -> None:
         """Restart the scene."""
-        self.post(Reset(self.history.note(self.now(), begins=True)))
+        self.post(Reset(self.history.note(self.now("reset"), begins=True)))
+        self.tell()
+
+    def drag(self, command: Command) -> None:
+        """Pass a command of a view on; the first one of a drag is an act."""
+        thing = ""
+        if isinstance(command, GrabTo) and command.client not in self.pulling:
+            self.pulling.add(command.client)
+            thing = "a pull"
+        elif isinstance(command, Release):
+            self.pulling.discard(command.client)
+        elif isinstance(command, Place) and command.thing != CAMERA:
+            thing = f"moving the {command.thing}"
+        if thing:
+            act, number = self.history.act, "" if isinstance(command, GrabTo) else thing
+            new = self.history.note(self.now(thing), number=number, begins=True)
+            if new != act:
+                self.post(GoOn(new))
+                self.tell()
+        self.post(command)
 
     def undo(self) -> None:
         """Restore the settings before the last act, and their run if that act began another."""
-        act, settings = self.history.act, self.history.take_last()
+        last = self.history.settings
+        self.restore(self.history.act, self.history.take_last(self.now_before(last[-1] if last else None)))
+
+    def redo(self) -> None:
+        """Restore the settings after the act that was undone last, and their run as it was left."""
+        undone = self.history.undone
+        self.restore(self.history.act, self.history.take_next(self.now_before(undone[-1] if undone else None)))
+
+    def now_before(self, settings: EarlierSettings | None) -> EarlierSettings:
+        """The present settings before others are restored; with the cameras if these will be placed."""
+        return self.now("", client_cameras(self.server) if settings is not None and settings.cameras else ())
+
+    def restore(self, act: int, settings: EarlierSettings | None) -> None:
+        """Show settings from the history, if there are any. act: of the present run."""
         if settings is None:
             return
+        self.pulling.clear()  # what is still held begins another drag
         known = settings.preset in self.presets  # a set-up of the user may have been removed
         back = settings.act != act
         if settings.cameras:
@@ -195,9 +232,12 @@ class SceneSettings:
             self.loaded = next(iter(self.kind.presets))
         self.tell()
 
-    def now(self, cameras: tuple[ClientCamera, ...] = ()) -> EarlierSettings:
-        """The present settings, for the history. cameras: of all browsers, if they are about to be placed."""
-        return EarlierSettings(self.params, self.loaded, cameras=cameras)
+    def now(self, words: str, cameras: tuple[ClientCamera, ...] = ()) -> EarlierSettings:
+        """The present settings, for the history.
+
+        words: the act that is about to change them. cameras: of all browsers, if they are about to be placed.
+        """
+        return EarlierSettings(self.params, self.loaded, cameras=cameras, words=words)
 
     def take(self, command: Take, preset: str) -> None:
         """Take parameters, and pass them to the simulation. preset: their source."""

@@ -290,6 +290,8 @@ class SceneKind(Generic[P, F, R]):
     )  # preset -> a sentence: its subject and something to try
     # Of a snapshot of a run that diverged: a stable value, or None; None: runs do not diverge.
     remedy: Callable[..., Advice | None] | None = None
+    # Of a snapshot: true if a run with its parameters would be stable; None: runs do not diverge.
+    is_stable: Callable[..., bool] | None = None
     # Of a snapshot: a value that repairs the initial state, offered under its control.
     advice: Callable[..., Advice | None] | None = None
     # Of parameters: lines on the files that they name, on data read and left out. The command line prints them, the

@@ -1,6 +1,6 @@
 """The user's own set-ups: files in a folder of the user, which the list of presets shows beside those of the program.
 
-Each is a file as `app/scenes/setups.py` writes it. Files in the folder that cannot be read are left out.
+Each is a file as `app/scenes/setups.py` writes it. What is in the folder and cannot be read is left out.
 """
 
 import itertools
@@ -16,7 +16,6 @@ from sim.files import replacing
 from sim.validation import argument_error
 
 MAX_OWN = 100  # of one scene
-PREFIX = "set-up-"  # of file names, as Windows reserves names such as con.json and nul.json
 FILE_NAME = re.compile(r"[^a-z0-9]+")  # replaced in a name
 
 
@@ -31,22 +30,22 @@ def folder_of(kind: AnyKind) -> Path:
 
 
 def own_files(kind: AnyKind) -> dict[str, tuple[Path, Setup]]:
-    """Name -> (file, set-up), in order of the names; at most `MAX_OWN`."""
-    own: dict[str, tuple[Path, Setup]] = {}
+    """Name -> (file, set-up), in order of the names; at most `MAX_OWN` of those that can be read."""
+    found: dict[str, tuple[Path, Setup]] = {}
     try:
         paths = sorted(folder_of(kind).glob("*.json"))
     except OSError:
-        return own
+        return found
     for path in paths:
-        if len(own) == MAX_OWN:
+        if len(found) == MAX_OWN:
             break
         try:
             with path.open("rb") as file:
                 setup = read_file(file.read(4 * MAX_LENGTH + 1).decode("utf-8"), path.name, kind.name)
         except (OSError, ValueError):
             continue
-        own.setdefault(setup.name or path.stem, (path, setup))
-    return dict(sorted(own.items()))
+        found.setdefault(setup.name or path.stem, (path, setup))
+    return dict(sorted(found.items()))
 
 
 def keep_own(kind: AnyKind, name: str, text: str) -> None:
@@ -64,12 +63,10 @@ def keep_own(kind: AnyKind, name: str, text: str) -> None:
     else:
         folder = folder_of(kind)
         folder.mkdir(parents=True, exist_ok=True)
-        stem = PREFIX + FILE_NAME.sub("-", name.lower()).strip("-")
-        path = folder / f"{stem}.json"
-        for number in itertools.count(2):
-            if not path.exists():
-                break
-            path = folder / f"{stem}{number}.json"
+        # Windows reserves names such as "con", with any extension.
+        stem = f"set-up-{FILE_NAME.sub('-', name.lower()).strip('-')}".strip("-")
+        paths = (folder / f"{stem}{end}.json" for end in itertools.chain(("",), itertools.count(2)))
+        path = next(path for path in paths if not path.exists())
     with replacing(path) as draft:
         draft.write_text(text, "utf-8")
 

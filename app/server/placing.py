@@ -31,7 +31,7 @@ class CameraPlacing:
         if status.run.number != self.run:
             self.run = status.run.number
             self.end_fitting()
-        if placing is None or placing is self.placed or placing.act != status.run.act:
+        if placing is None or placing is self.placed or placing.act != status.run.placed:
             return
         self.placed = placing
         if placing.first_view:

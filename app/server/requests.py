@@ -26,7 +26,7 @@ class SceneRequests:
 
     def put(self, request: SceneRequest) -> None:
         """Add a request."""
-        self.number = next(self.numbers)  # before anybody can take the request and ask for its number
+        self.number = next(self.numbers)  # before it can be taken out
         self.waiting.put(request)
 
     def pop(self) -> SceneRequest:

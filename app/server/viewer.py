@@ -306,7 +306,7 @@ class Viewer:
         """Release the objects that a browser drags, as it comes or goes."""
         (self.came.set if self.visitors() else self.came.clear)()
         if self.current is not None:
-            self.current.commands.put(Release(client.client_id))
+            self.current.settings.drag(Release(client.client_id))
             self.current.settings.history.release(client.client_id)
 
     def close(self, picture_time: float | None = None) -> None:

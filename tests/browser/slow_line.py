@@ -19,6 +19,8 @@ class Line:
         self.port = 0
         self.cut_until = 0.0  # [s] of the clock of the event loop
         self.writers: list[asyncio.StreamWriter] = []
+        self.dead: set[asyncio.StreamWriter] = set()  # ends of connections that stay open and pass nothing on
+        self.is_dead = False  # True if that holds for new connections too
         self.ready = threading.Event()
         self.thread = threading.Thread(target=lambda: asyncio.run(self.serve()), daemon=True)
 
@@ -41,6 +43,8 @@ class Line:
         await self.loop.sock_connect(end, ("127.0.0.1", self.lab))
         there, on = await asyncio.open_connection(sock=end, limit=CHUNK)
         self.writers += [back, on]
+        if self.is_dead:
+            self.dead |= {back, on}
         to_browser = asyncio.ensure_future(self.carry(there, back))
         to_lab = asyncio.ensure_future(self.carry(here, on))
         try:
@@ -61,6 +65,22 @@ class Line:
             self.writers.clear()
 
         self.loop.call_soon_threadsafe(abort)
+
+    def fall_silent(self, *, wholly: bool = False) -> None:
+        """Pass nothing on over the open connections, and close none, as a router that has forgotten them.
+
+        wholly: over new connections neither, until `come_back`.
+        """
+
+        def stop() -> None:
+            self.dead |= set(self.writers)
+            self.is_dead = wholly
+
+        self.loop.call_soon_threadsafe(stop)
+
+    def come_back(self) -> None:
+        """Pass new connections on; those that are dead stay so."""
+        self.loop.call_soon_threadsafe(lambda: setattr(self, "is_dead", False))
 
     async def carry(self, source: asyncio.StreamReader, target: asyncio.StreamWriter) -> None:
         """One way: what comes waits in the router until the line is free, and arrives `delay` later."""
@@ -85,7 +105,8 @@ class Line:
             await asyncio.sleep(max(0.0, arrival - self.loop.time()))
             if not part or target.is_closing():
                 return
-            target.write(part)
+            if target not in self.dead:
+                target.write(part)
 
 
 @contextlib.contextmanager

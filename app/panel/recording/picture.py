@@ -23,7 +23,8 @@ def take_picture(
     size: width and height [pixels]; a height of 0 is that of the page's proportions, a width of 0 that of the page.
     timeout: [s] for the browser to draw it.
 
-    Waits for the browser, so it must not be called on viser's event loop. Raises TimeoutError, RuntimeError.
+    Waits for the browser, so it must not be called on viser's event loop. Raises TimeoutError, and RuntimeError if the
+    browser has drawn nothing.
     """
     import imageio.v3 as iio  # only where a picture is made
 
@@ -35,6 +36,8 @@ def take_picture(
         transport_format="png",  # with transparency, and without loss
         timeout=timeout,
     )
+    if not picture.any():
+        raise RuntimeError("the browser drew an empty picture: load the page again")
     encoded = io.BytesIO()
     how = {"extension": ".jpg", "quality": QUALITY} if jpeg else {"extension": ".png"}
     iio.imwrite(encoded, picture if transparent else before_sky(client, picture), **how)  # pyright: ignore

@@ -3,6 +3,7 @@
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
 
+import itertools
 import threading
 import time
 
@@ -70,6 +71,7 @@ class Share:
         gui = server.gui
         self.files = Files(server, settings, recorder, plots, make_replay)
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
+        self.link_numbers = itertools.count(1)
         # Identity of buttons -> the buttons, their names, and the time [s] until which they confirm.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
@@ -223,9 +225,12 @@ class Share:
         settings, camera = self.settings, camera_of(client)
         if event.target.value == COPY:
             query = write_query(settings.kind, settings.params, settings.loaded, camera)
-            link = fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query)
+            # The number makes a second link news to the page, which copies it and says so (js/sharing/copy.js).
+            link = fill(
+                '<a class="springtide-link" data-springtide-link="{}" data-springtide-number="{}" href="{}">{}</a>',
+                query, next(self.link_numbers), query, query,
+            )  # fmt: skip
             self.say("This set-up", join((link, not_in_link(settings.params))))
-            self.confirm(event.target, COPY, "Copied")
             return
         if event.target.value != SAVE:
             return
@@ -235,9 +240,9 @@ class Share:
         except ValueError as reason:
             self.say("This set-up", str(reason))
             return
-        client.send_file_download(file_name(settings, ".json", name), text.encode(), save_immediately=True)
-        self.say("This set-up", "")
-        self.confirm(event.target, SAVE, "Saved")
+        file = file_name(settings, ".json", name)
+        client.send_file_download(file, text.encode(), save_immediately=True)
+        self.say("This set-up", f"{file} was sent to the browser.")
 
     async def on_curves(self, event: ViserEvent) -> None:
         """Keep the curves of the plots over time beside those of the next run, or drop them."""

@@ -7,6 +7,7 @@ that is. `tests/app/server/test_viser_names.py` takes each away in turn.
 import asyncio
 import contextlib
 import sys
+import time
 from collections.abc import Awaitable, Callable, Sequence
 from typing import Any, TypeVar
 
@@ -64,6 +65,26 @@ def input_of(server: viser.ViserServer, uuid: str) -> GuiHandle | None:
 def send_to_all(server: viser.ViserServer, message: ViserMessage) -> None:
     """Send a message to every browser of a server."""
     connection_of(server).queue_message(message)
+
+
+def message_frame(parts: Sequence[dict[str, Any]]) -> bytes:
+    """Messages as viser's client reads them from a connection; empty if that is not possible.
+
+    See `_message_producer` of viser: the size of the content and of its compressed form, then this, without arrays.
+    """
+
+    def encode() -> bytes:
+        import msgspec
+        import zstandard
+
+        _ = messages.Message.as_serializable_dict  # of a viser that has this form
+        stamp = {"messages": parts, "timestampSec": time.perf_counter(), "binaryBufferLengths": ()}
+        inner = msgspec.msgpack.encode(stamp)
+        packed = zstandard.ZstdCompressor(level=1).compress(inner)
+        filling = bytes(-len(packed) % 8)
+        return len(inner).to_bytes(8, "little") + len(packed).to_bytes(8, "little") + packed + filling
+
+    return attempt(encode, b"", "a dead connection is not noticed")
 
 
 def update_node(client: viser.ClientHandle, node: str, **properties: Any) -> None:

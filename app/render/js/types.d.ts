@@ -10,6 +10,8 @@ declare var __springtide: Springtide | undefined;
 // What core/springtide.js describes.
 interface Springtide {
   failure?: string;
+  page?: string;
+  line?: Line;
   isRecording?: boolean;
   quality?: object;
   memory?: () => object;
@@ -18,6 +20,15 @@ interface Springtide {
   showsWhole?: () => boolean;
   contexts?: number;
   beside?: boolean;
+}
+
+interface Line {
+  heard: number;
+  beats: number;
+  wait: number;
+  isOpen: boolean;
+  close: () => void;
+  hurry: (time: number) => void;
 }
 
 // Selectors in the scripts find elements of HTML.
@@ -455,6 +466,7 @@ declare module "node:assert/strict" {
     equal(found: unknown, expected: unknown): void;
     deepEqual(found: unknown, expected: unknown): void;
     ok(found: unknown): void;
+    rejects(found: Promise<unknown>, expected: RegExp): Promise<void>;
   };
   export default assert;
 }

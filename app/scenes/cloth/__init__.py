@@ -30,4 +30,5 @@ SCENE = SceneKind(
     instant=ClothInstant,
     warnings=lambda scene: step_warnings(scene.motion.method, scene.readings().stability),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    is_stable=lambda snapshot: snapshot.readings.stability.share <= 1.0,
 )

@@ -59,6 +59,12 @@ def remedy(snapshot: Any) -> Advice | None:
     return holding_step(snapshot.params.time_step, now.stability)
 
 
+def is_stable(snapshot: Any) -> bool:
+    """True if a run with these parameters would be stable."""
+    now: MooringReadings = snapshot.readings
+    return (now.fault is None or not now.fault.is_grave) and now.stability.share <= 1.0
+
+
 def advice(snapshot: Any) -> Advice | None:
     """A value that corrects the state at the start."""
     now: MooringReadings = snapshot.readings

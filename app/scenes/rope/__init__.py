@@ -31,6 +31,7 @@ SCENE = SceneKind(
     stability_map=StabilityMap(stiffness_parameter, build),
     warnings=lambda scene: step_warnings(scene.motion.method, scene.readings().stability),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    is_stable=lambda snapshot: snapshot.readings.stability.share <= 1.0,
     quantities=QUANTITIES,
     instant=RopeInstant,
 )

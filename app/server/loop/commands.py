@@ -13,6 +13,7 @@ from app.messages import (
     Ask,
     BaseParams,
     Command,
+    GoOn,
     GrabTo,
     Halt,
     Pause,
@@ -109,6 +110,8 @@ def records_of(record: Record, commands: Iterable[Command]) -> list[Record]:
             last = records[-1]
             params = command.params if isinstance(command, Take) else last.params
             records.append(Record(params, command.act or last.act))
+        elif isinstance(command, GoOn):  # no other run
+            records[-1] = records[-1]._replace(act=command.act)
     return records
 
 
@@ -148,7 +151,7 @@ def is_urgent(command: Command) -> bool:
     """
     if isinstance(command, Take):
         return not command.changes_only
-    return not isinstance(command, SceneCommand | Play | Ask | Advance)
+    return not isinstance(command, SceneCommand | Play | GoOn | Ask | Advance)
 
 
 def effect_of_takes(record: Record, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
@@ -205,15 +208,15 @@ class CompileGate:
     def admit(self, commands: Iterable[Command]) -> list[Command]:
         """The commands that can be handled now, in order.
 
-        Parameters that cannot run yet wait, and are admitted later. A later reset or wait of a program stays behind
-        them. Other commands concern the scene that is shown, and pass. Newer parameters that can run drop those that
-        wait (`drop_held`).
+        Parameters that cannot run yet wait, and are admitted later. A later reset, drag or wait of a program stays
+        behind them. Other commands concern the scene that is shown, and pass. Newer parameters that can run drop those
+        that wait (`drop_held`).
         """
         admitted = self.passed()
         for command in commands:
             if isinstance(command, Take):
                 admitted += self.passed(command)
-            elif self.held and isinstance(command, Advance | Reset):
+            elif self.held and isinstance(command, Advance | Reset | GoOn):
                 self.held.append(command)
             else:
                 admitted.append(command)

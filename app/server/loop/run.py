@@ -71,6 +71,7 @@ class SceneRun:
         self.unmade = False  # the scene could not begin, and waits for other values
         self.running = not paused
         self.halted = ""
+        self.halted_with = scene.params  # parameters of the run that halted
         self.fixed_step = FixedStep()
         self.replay: Replay | None = None  # of a run that has just diverged
         self.seat: Seat | None = None  # at a clock shared with other loops
@@ -108,7 +109,7 @@ class SceneRun:
         if self.seat is not None:
             self.seat.tell_others(Pause())
         self.running = False
-        self.halted = reason
+        self.halted, self.halted_with = reason, self.scene.params
 
     def go_on(self, wall: float) -> bool:
         """Take steps, or replay the last moments of a divergence, within a tick; True if there is news to show.
@@ -300,7 +301,8 @@ class SceneRun:
 
     def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
         """Give the new run its number; see `RunIdentity`. act: 0 for that of the run before."""
-        self.identity = RunIdentity(next(self.numbers), act or self.identity.act, before, since)
+        act = act or self.identity.act
+        self.identity = RunIdentity(next(self.numbers), act, before, since, act)
 
     def reset(self, act: int = 0, action: Callable[[], None] | None = None) -> None:
         """Restart the scene, or begin it by another action, for an act; a halted run plays again."""
@@ -444,7 +446,6 @@ class RunSequence:
         run = self.run
         run.clear()
         run.scene.params, run.fixed_step.cost_unknown = params, True
-        run.snapshots.forget_rates()
         run.guarded(lambda: run.scene.resume(state.value))
         run.identify(act, state.run, run.scene.time)
         if run.seat is not None:
@@ -458,6 +459,17 @@ class RunSequence:
         if not (run.stopped_by or run.unmade or run.unfinished):
             rows = tuple(run.snapshots.kept_rows)
             self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
+
+    def go_on_under(self, act: int) -> None:
+        """Continue the run under another act, and keep it as it is for an undo of that."""
+        run = self.run
+        if act == run.identity.act:
+            return
+        self.leave()
+        placed = run.identity.placed
+        run.identify(act, run.identity.number, run.scene.time)
+        run.identity = run.identity._replace(placed=placed)
+        run.snapshots.keep_rates()
 
     def keep_dropped(self, take: Take) -> None:
         """Keep a run that was to resume from a moment for an undo, when newer parameters replace it."""

@@ -17,6 +17,7 @@ from app.messages import (
     Advance,
     Ask,
     Command,
+    GoOn,
     GrabTo,
     Halt,
     Pause,
@@ -236,6 +237,8 @@ class SimLoop:
                 self.runs.obey(command)
             case Reset(act):
                 self.runs.begin_again(act)
+            case GoOn(act):
+                self.runs.go_on_under(act)
             case Ask(read, answer):
                 self.tell(read, answer)
             case Advance(seconds, answer):

@@ -23,12 +23,14 @@ from app.server.loop.clock import FixedStep, TickClock
 from app.server.loop.commands import NOTHING, STEPS, Activity
 from app.server.loop.replay import Replay
 from sim.interruption import InterruptionError
+from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 MAX_TIME_WITHOUT_FRAME = 1.0  # [s] without a complete picture, after which one is finished although controls wait
 KEEP_INTERVAL = 0.1  # [s] least wall time between two checkpoints
 KEEP_SHARE = 0.003  # fraction of a core for checkpoints
 RATE_WINDOW = 1.0  # [s] over which rates are measured
+MIN_RATE_TIME = 0.25  # [s] of a run before its speed is known
 RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel reports a run that was not kept
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
@@ -45,6 +47,7 @@ class ShownRun(Protocol):
     activity: Activity
     running: bool
     halted: str
+    halted_with: BaseParams
     unmade: bool
     unfinished: Callable[[], None] | None
     replay: Replay | None
@@ -60,7 +63,9 @@ class Snapshots:
     def __init__(self, run: ShownRun) -> None:
         self.run = run
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
+        self.rated = 0  # number of the run of this history
         self.restarted_until = 0.0  # [s] of the ticks until which the panel reports an undo that had to restart a run
+        self.restarted = 0  # number of the restarted run
         self.keep_at = 0.0  # [s] of the ticks of the next checkpoint
         self.plot_rows: collections.deque[RunRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
@@ -154,9 +159,10 @@ class Snapshots:
         return [self.plot_rows.popleft() for _ in range(len(self.plot_rows))]
 
     def bring_back(self, rows: Sequence[PlotRow]) -> None:
-        """Plot the rows of a restored run, in place of those of its start."""
+        """Plot the rows of a restored run, in place of those of its start, and rate it from now on."""
         self.run.scene.take_plot_rows()
         self.hand_over(rows)
+        self.forget_rates()
 
     def keep_state(self) -> Checkpoint | None:
         """Checkpoint of a running scene, a few times a second; rarely if copying takes long."""
@@ -175,17 +181,20 @@ class Snapshots:
         run, history, wall = self.run, self.history, self.run.clock.wall
         moment = None if run.replay is None else run.replay.moment
         simulated = run.scene.time if moment is None else moment.time
+        if self.rated != run.identity.number:  # a rate never crosses two runs
+            self.forget_rates()
         history.append((wall, simulated))
         while len(history) > 2 and history[0][0] < wall - RATE_WINDOW:
             history.popleft()
         elapsed = wall - history[0][0]
+        is_rated = elapsed >= MIN_RATE_TIME and run.running
         capped = run.fixed_step.capped and run.running
         return Status(
             running=run.running,
             time=simulated,
             steps=run.counts["steps"],
             speed=run.scene.params.speed,
-            actual_speed=max(0.0, (simulated - history[0][1]) / elapsed) if elapsed > 0 and run.running else 0.0,
+            actual_speed=max(0.0, (simulated - history[0][1]) / elapsed) if is_rated else None,
             capped=capped,
             frame_rate=(len(history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=run.halted,
@@ -193,17 +202,23 @@ class Snapshots:
             run=run.identity,
             unmade=run.unmade,
             pace=run.scene.pace,
-            restarted=wall < self.restarted_until,
+            restarted=wall < self.restarted_until and run.identity.number == self.restarted,
+            outdated=bool(run.halted) and effect_of_change(run.halted_with, run.scene.params) not in (None, "look"),
             replayed=None if moment is None else (moment.low, moment.high),
         )
 
     def forget_rates(self) -> None:
         """Measure speed and frame rate from now on."""
         self.history.clear()
+        self.rated = self.run.identity.number
+
+    def keep_rates(self) -> None:
+        """Measure on: the present run continues the last one."""
+        self.rated = self.run.identity.number
 
     def show_restarted(self) -> None:
         """Have the panel report for a while that an undo had to restart a run."""
-        self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
+        self.restarted_until, self.restarted = self.run.clock.wall + RESTARTED_SHOWN, self.run.identity.number
 
 
 def kept_state(run: ShownRun) -> Checkpoint:

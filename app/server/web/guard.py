@@ -18,6 +18,7 @@ import logging
 import math
 import os
 import socket
+import sys
 import threading
 import time
 import traceback
@@ -44,7 +45,8 @@ from app.render.handles.viser_inside import (
     wake_on_loop,
 )
 from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
-from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
+from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, read_origin, refusal
+from app.server.web.beat import PAGE, Beats
 from app.server.web.page import own_answer, with_cover
 from app.server.web.panes import Panes
 from app.server.web.rate_limit import LIMIT, RateLimit, put_small_first
@@ -54,6 +56,7 @@ MAX_LENGTH = 1000  # of a text, or of a list
 MAX_FIELD_LENGTH = 64  # of a text typed into a field
 MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
+MAX_REPORTED = 5  # addresses of refused pages in the terminal
 MAX_WAITING = 64  # waiting messages of one browser
 STARTING = threading.Lock()  # one server at a time: websockets' serve() is patched while a server starts
 
@@ -106,10 +109,43 @@ def is_loopback(host: str) -> bool:
         return False
 
 
-def may_connect(request: Request, bound: str, access: Access) -> bool:
-    """True if a request, which has the key if one is set, comes from a page that may connect."""
-    origin = request.headers.get("Origin")
+def may_connect(request: Request, bound: str, access: Access, origin: str | None) -> bool:
+    """True if a page of this origin, at the Host of a request that has the key if one is set, may connect."""
     return bool(access.key) or origin in access.origins or is_own_origin(origin, request.headers.get("Host"), bound)
+
+
+def advice(origin: str) -> str:
+    """The option that would let a page of this origin connect; "" if it is no address of a page."""
+    try:
+        return f"--allowed-origin {read_origin(origin)}"
+    except ValueError:
+        return ""
+
+
+class Refusals:
+    """The pages that were refused, each reported once in the terminal."""
+
+    def __init__(self) -> None:
+        self.reported: set[str] = set()
+
+    def report(self, origin: str) -> None:
+        """Print that a page of this origin was refused, and the option that would allow it."""
+        option = advice(origin)
+        if not option or option in self.reported or len(self.reported) >= MAX_REPORTED:
+            return
+        self.reported.add(option)
+        print(
+            f"springtide: refused a page at {option.split()[1]}. If it is yours, start the lab with {option}",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    @staticmethod
+    def reason(origin: str) -> str:
+        """The same for the page."""
+        option = advice(origin)
+        cure = f" If the page is yours, start the lab with {option}" if option else ""
+        return f"This page may not connect: the lab does not know its address.{cure}"
 
 
 @contextlib.contextmanager
@@ -122,6 +158,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
     serve = websockets.asyncio.server.serve
     started: list[str] = []
     ended: concurrent.futures.Future[None] = concurrent.futures.Future()
+    beats, refusals = Beats(), Refusals()
 
     def guarded_serve(
         handler: Callable[[ViserConnection], Awaitable[None]],
@@ -133,12 +170,20 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
             request = admitted(access, sent)
             if isinstance(request, Response):
                 return request
-            if not may_connect(request, bound, access):
+            origin = request.headers.get("Origin")
+            if not may_connect(request, bound, access, origin):
+                if "Upgrade" in request.headers:
+                    refusals.report(origin or "")
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
             request = panes.read(connection, request)
             if request is None:
                 return refusal(HTTPStatus.NOT_FOUND, "No second pane is open.")
-            answer = own_answer(request, shared=bool(access.key))
+
+            def refused(page: str) -> str:
+                """The reason why a page of this origin may not connect; "" if it may."""
+                return refusals.reason(page) if page and not may_connect(sent, bound, access, page) else ""
+
+            answer = own_answer(request, shared=bool(access.key), refused=refused)
             return answer or with_cover(request, process_request(connection, request))
 
         async def serve_pane(connection: ViserConnection) -> None:
@@ -146,7 +191,8 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
             limit = RateLimit(connection)
             connection.send = limit.send
             LIMIT.set(limit)
-            await panes.serve(connection, handler)
+            async with beats.on(connection, limit):
+                await panes.serve(connection, handler)
 
         started.append(bound)
         return serve(serve_pane, *address, process_request=check, **options)  # type: ignore[arg-type]
@@ -236,6 +282,7 @@ class MessageFilter:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
         self.is_in_place = False  # True if messages pass through it
+        self.pages: dict[ClientId, str] = {}  # connected clients that are pages of ours, with their names
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with its value bounded if that is enough, or None if it is refused.
@@ -359,10 +406,13 @@ def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> boo
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
         intakes[client] = intake = Intake(message_filter, handlers)
+        if name := PAGE.get(""):
+            message_filter.pages[client] = name
         return intake.queue
 
     def leave(client: ClientId) -> None:
         intakes.pop(client).close()
+        message_filter.pages.pop(client, None)
         forget_client(server, client)
 
     return intercept(server, join, leave)

@@ -7,8 +7,10 @@ import functools
 import gzip
 import secrets
 import sys
+from collections.abc import Callable
 from http import HTTPStatus
 from importlib import resources
+from urllib.parse import parse_qs
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
@@ -17,26 +19,32 @@ from app.render.client_page import with_ours
 from app.render.scripts import BEFORE, PAGE
 
 ALIVE_PATH = "/springtide-alive"  # requested by the page, to check that the server answers
-# The answer to that: another name is another server, which knows nothing of the page.
+# The answer to that: another name is another server, which knows nothing of the page. A second line is the reason why a
+# page may not connect.
 SERVER_NAME = secrets.token_hex(8)
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 TITLE, STARTING = "Springtide", "Starting …"
 STYLES = ("page.css",)
 
 
-def own_answer(request: Request, *, shared: bool) -> Response | None:
-    """The answer to a request of ours; None for viser's. shared: other pages may read it."""
-    path = request.path.partition("?")[0]
+def own_answer(request: Request, *, shared: bool, refused: Callable[[str], str]) -> Response | None:
+    """The answer to a request of ours; None for viser's. shared: other pages may read it.
+
+    refused: returns the reason why a page of an origin may not connect, or "".
+    """
+    path, _, query = request.path.partition("?")
     if path == PANES_PATH:
         body = (resources.files("app.render") / "js" / "beside.html").read_bytes()
         headers = Headers({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body))})
         return Response(HTTPStatus.OK, "OK", headers, body)
     if path != ALIVE_PATH:
         return None
-    headers = Headers({"Content-Type": "text/plain", "Content-Length": str(len(SERVER_NAME))})
+    reason = refused(parse_qs(query).get("origin", [""])[0])
+    body = "\n".join(filter(None, (SERVER_NAME, reason))).encode()
+    headers = Headers({"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(body))})
     if shared:
         headers["Access-Control-Allow-Origin"] = "*"
-    return Response(HTTPStatus.OK, "OK", headers, SERVER_NAME.encode())
+    return Response(HTTPStatus.OK, "OK", headers, body)
 
 
 def with_cover(request: Request, response: Response | None) -> Response | None:

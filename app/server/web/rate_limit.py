@@ -15,7 +15,7 @@ import collections
 import contextvars
 import math
 import statistics
-from collections.abc import AsyncGenerator, Sequence
+from collections.abc import AsyncGenerator, Awaitable, Callable, Sequence
 from typing import NamedTuple
 
 import viser
@@ -44,6 +44,10 @@ class Sent(NamedTuple):
     pong: "asyncio.Future[float]"
 
 
+async def nothing(size: int) -> None:
+    """Nothing is announced."""
+
+
 class RateLimit:
     """The limit of one browser's messages, on the event loop of its connection."""
 
@@ -62,6 +66,7 @@ class RateLimit:
         self.probe_at = -math.inf  # [s] when the round trip is measured next
         self.last_pong = -math.inf  # [s] when it came
         self.is_quick = False  # True if it came within QUICK
+        self.announce: Callable[[int], Awaitable[None]] = nothing  # called before a picture of so many bytes
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
@@ -71,6 +76,7 @@ class RateLimit:
             return
         async with self.turn:
             await self.room()
+            await self.announce(len(data))
             start = self.clock()
             await self.send_now(data)
             if self.is_quick and not self.on_the_way and self.unasked < MAX_UNASKED:

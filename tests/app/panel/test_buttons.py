@@ -24,9 +24,7 @@ SAMPLE = ("rope", "radial_sea")  # whose panels are pressed in every run of the 
 CLIENT = 1
 BUTTONS = (viser.GuiButtonHandle, viser.GuiButtonGroupHandle)
 # Words of a button that confirm its action; the others show it elsewhere.
-CONFIRMED = {
-    share.COPY: "Copied", share.SAVE: "Saved", share.KEEP: "Kept in the list", share.REMOVE: "Removed",
-}  # fmt: skip
+CONFIRMED = {share.KEEP: "Kept in the list", share.REMOVE: "Removed"}
 
 
 class Camera(SimpleNamespace):
@@ -145,9 +143,16 @@ def test_every_button_of_every_tab_is_pressed(
         done.append((handle._impl.uuid, label))
         if pressed.shown() == before and label not in CONFIRMED.values():
             silent.append(label or handle.label)
+        if label == share.COPY:  # each press has a link of its own, which the page copies
+            link = pressed.panel.share.lines["This set-up"].content
+            pressed.press(handle, label)
+            assert pressed.panel.share.lines["This set-up"].content != link
         if label in CONFIRMED:
             assert CONFIRMED[label] in handle.options
     labels = [label for _, label in done]
-    assert {*CONFIRMED, "Play", "Pause", "Step", "Reset"} <= {*labels, "Play" if "Pause" in labels else "Pause"}
+    assert {*CONFIRMED, share.COPY, share.SAVE, "Play", "Pause", "Step", "Reset"} <= {
+        *labels,
+        "Play" if "Pause" in labels else "Pause",
+    }
     assert silent == []
     assert "Traceback" not in capsys.readouterr().err

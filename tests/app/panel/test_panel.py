@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import viser
 
-from app.messages import RunOn, Take
+from app.messages import Play, RunOn, Take
 from app.panel.controls.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
@@ -83,6 +83,51 @@ def test_the_head_tells_how_long_a_step_takes_and_who_looks(lab: Viewer) -> None
         words = lab.panel.head.status.content
         assert ("This step has taken 3.5 s so far." in words) is (busy > 0.0)
         assert ("4 browsers share this lab." in words) is (visitors > 1)
+
+
+def test_the_box_of_a_stop_speaks_of_the_values_that_are_set(lab: Viewer) -> None:
+    """Words on a diverged run, with the value that would have been stable, go with that run's parameters."""
+
+    def box() -> tuple[str, bool, bool]:
+        head = lab.panel.head
+        head.show(lab.loop.latest, 0.0, 1)
+        words = head.status.content.partition("springtide-stopped")[2]
+        return words, bool(head.remedy.button.visible), bool(head.again.visible)
+
+    def change(stiffness: float, **also: object) -> None:
+        lab.settings.set_all({"stiffness": stiffness, **also})
+        lab.loop.tick(0.02)
+
+    lab.open("rope")
+    lab.served.stop_threads()
+    lab.loop.run.audience = lambda: 1
+    change(800.0)
+    lab.loop.handle(Play())
+    assert box() == ("", False, False)
+    change(265_000.0)
+    for _ in range(1000):
+        if not lab.loop.latest.status.halted:
+            lab.loop.tick(0.02)
+    words, has_advice, can_reset = box()
+    assert ("became unstable" in words, "of the largest stable one" in words, has_advice, can_reset) == (
+        True,
+        True,
+        True,
+        False,
+    )
+    change(800.0)
+    words, has_advice, can_reset = box()
+    assert "The run stopped with other values. These values are stable. Reset starts again." in words
+    assert ("%" in words, has_advice, can_reset) == (False, False, True)
+    change(500_000.0)
+    words, has_advice, can_reset = box()
+    assert ("These values are stable" in words, has_advice, can_reset) == (False, True, False)
+    change(265_000.0)  # those of the run that stopped
+    assert "became unstable" in box()[0]
+    change(800.0)
+    lab.settings.reset()
+    lab.loop.tick(0.02)
+    assert box() == ("", False, False)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -74,9 +74,11 @@ def test_a_slider_that_is_moved_is_one_change() -> None:
     for stiffness in range(1, 50):
         history.note(EarlierSettings(RopeParams(stiffness=float(stiffness)), "first"), number="stiffness")
     history.note(EarlierSettings(RopeParams(mass=3.0), "first"), number="mass")
-    assert history.take_last() == EarlierSettings(RopeParams(mass=3.0), "first")
-    assert history.take_last() == EarlierSettings(RopeParams(stiffness=1.0), "first")
-    assert history.take_last() is None
+    assert history.take_last(EarlierSettings(RopeParams(), "now")) == EarlierSettings(RopeParams(mass=3.0), "first")
+    assert history.take_last(EarlierSettings(RopeParams(), "now")) == EarlierSettings(
+        RopeParams(stiffness=1.0), "first"
+    )
+    assert history.take_last(EarlierSettings(RopeParams(), "now")) is None
 
 
 def test_each_act_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
@@ -84,7 +86,7 @@ def test_each_act_that_begins_a_run_has_a_number_to_which_undo_returns() -> None
     acts = ("points", True), ("mass", False), ("", True), ("", True), ("points", True)
     assert [history.note(settings, number=number, begins=begins) for number, begins in acts] == [2, 2, 3, 4, 5]
     assert history.note(settings, number="points", begins=True) == 5  # the same change
-    back = [history.take_last() for _ in range(5)]
+    back = [history.take_last(EarlierSettings(RopeParams(), "now")) for _ in range(5)]
     assert [settings.act for settings in back if settings is not None] == [4, 3, 2, 2, 1]
     assert history.note(settings, begins=True) == 6  # no number comes twice
 

@@ -30,7 +30,7 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
     monkeypatch.setattr(lab.view, "show", fail)
     lab.commands.put(StepOnce())
     wait_for(lambda: lab.loop.run.halted)
-    assert lab.loop.run.halted == "The picture could not be updated, ValueError: no such colour"
+    assert lab.loop.run.halted == "The picture could not be drawn, ValueError: no such colour"
     wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.served.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
@@ -52,7 +52,7 @@ def test_an_error_anywhere_on_the_viewer_s_thread_halts_the_run_and_the_thread_l
     monkeypatch.setattr(lab.panel.recorder, method, fail_once)
     lab.commands.put(StepOnce())
     wait_for(lambda: lab.loop.run.halted)
-    assert lab.loop.run.halted.endswith("could not be updated, MemoryError: no room for a frame")
+    assert lab.loop.run.halted.endswith(", MemoryError: no room for a frame")
     wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.served.threads)
 

@@ -2,6 +2,7 @@
 
 import base64
 import io
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -233,27 +234,80 @@ def test_a_page_reloads_for_another_server_only_and_not_while_it_records(
 ) -> None:
     viewer = Viewer("127.0.0.1", 0)
     page = new_page(chromium, 480, 320, drawn=False)
-    try:
-        viewer.open("rope")
-        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2")
-        page.wait_for_selector(".springtide-panel[data-state]")
-        page.evaluate("window.isFirst = true")
-        questions: list[str] = []
-        page.route("**/springtide-alive", lambda route: (questions.append("failed"), route.abort()))
-        while len(questions) < 2:  # a laptop that wakes misses some
-            page.wait_for_timeout(100)
-        assert page.locator("#springtide-cover.springtide-hidden").count() == 1
-        page.wait_for_function("document.querySelector('#springtide-cover-words').innerText.includes('has stopped')")
-        page.unroute("**/springtide-alive")
-        page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")  # the same server
-        page.evaluate("window.__springtide.isRecording = true")
-        monkeypatch.setattr(served_page, "SERVER_NAME", "another")
-        with page.expect_response("**/springtide-alive"):
-            pass
-        page.wait_for_timeout(500)
-        assert page.evaluate("window.isFirst") is True
-        page.evaluate("window.__springtide.isRecording = false")
-        page.wait_for_function("window.isFirst === undefined")
-    finally:
-        page.close()
-        viewer.shut()
+    with slow_line(viewer.port, FAST, 0.0) as line:
+        try:
+            viewer.open("rope")
+            page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
+            page.wait_for_selector(".springtide-panel[data-state]")
+            page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")
+            page.evaluate("window.isFirst = true")
+            line.cut(HOUR)
+            page.wait_for_function(
+                "document.querySelector('#springtide-cover-words').innerText.includes('has stopped')"
+            )
+            line.cut(0.0)  # back, with the same server
+            page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")
+            page.evaluate("window.__springtide.isRecording = true")
+            monkeypatch.setattr(served_page, "SERVER_NAME", "another")
+            line.cut(3.0)
+            with page.expect_response("**/springtide-alive*"):
+                pass
+            page.wait_for_timeout(500)
+            assert page.evaluate("window.isFirst") is True
+            page.evaluate("window.__springtide.isRecording = false")
+            line.cut(3.0)
+            page.wait_for_function("window.isFirst === undefined")
+        finally:
+            page.close()
+            viewer.shut()
+
+
+SHOWN = """() => { const at = (selector) => document.querySelector(selector)?.innerText.trim() ?? "";
+    const state = document.querySelector(".springtide-state");
+    const word = () => state && getComputedStyle(state, "::before").content;
+    const cover = document.querySelector("#springtide-cover:not(.springtide-hidden) #springtide-cover-words");
+    return { cover: cover?.innerText ?? "", line: at("#springtide-line"), status: at(".springtide-panel"), word: word(),
+             state: document.documentElement.dataset.springtideLine ?? "open" }; }"""
+MAX_SILENT = 12.0  # [s] until a page says that nothing comes, and connects again
+MAX_BACK = 5.0  # [s] until a page goes on once the line is back
+SLOW_MACHINE = 3.0  # [s] more for a page that draws in software
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("wholly", [False, True])
+def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: Any, wholly: bool) -> None:
+    """wholly: no new connection passes either, for some time."""
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    page = new_page(chromium, 480, 320, drawn=False)
+
+    def wait(condition: Callable[[dict[str, str]], bool], seconds: float) -> dict[str, str]:
+        end = time.monotonic() + seconds
+        while not condition(found := page.evaluate(SHOWN)):
+            assert time.monotonic() < end, found
+            page.wait_for_timeout(50)
+        return found
+
+    with slow_line(viewer.port, FAST, 0.0) as line:
+        try:
+            page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
+            page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")
+            wait(lambda shown: shown["status"].startswith("Running"), 60.0)
+            page.wait_for_timeout(6000)
+            assert page.evaluate(SHOWN)["state"] == "open"
+            line.fall_silent(wholly=wholly)
+            said = wait(lambda shown: shown["state"] != "open", MAX_SILENT)
+            assert said["line"] == "Nothing arrives from the lab: this picture is old."
+            assert said["word"] == '"Last seen at"'
+            assert said["status"].startswith("t = ")
+            if wholly:
+                wait(lambda shown: shown["state"] == "closed" and "Connecting again" in shown["line"], MAX_SILENT)
+                wait(lambda shown: "does not answer" in shown["cover"], 30.0)
+                line.come_back()
+            back = MAX_BACK + SLOW_MACHINE + (0.0 if wholly else MAX_SILENT)
+            shown = wait(lambda shown: shown["state"] == "open" and shown["status"].startswith("Running"), back)
+            assert shown["line"] == shown["cover"] == ""
+            assert viewer.visitors() == 1
+        finally:
+            page.close()
+            viewer.shut()

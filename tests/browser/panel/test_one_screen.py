@@ -83,7 +83,7 @@ LARGE = """() => {
 def pause(lab: Viewer, tab: Tab) -> None:
     """Pause the scene, and wait until the page shows it.
 
-    A line of the head names the compilation, and another one says that a busy machine is slower than real time.
+    A line of the head names the compilation, and another one says that a busy machine is slower than set.
     """
     tab.wait(lambda: not any(lab.compiling.progress()), 200)
     lab.loop.commands.put(Pause())

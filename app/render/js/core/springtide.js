@@ -1,8 +1,10 @@
 // The only global name of the page: for tests, for the page with the panes, and for the scripts before viser's client.
 //
-// fail(words): show a failure on the cover (before/failures.js). isRecording: true while a clip is recorded. awaitPicture(): the
-// scene is another one. showsWhole(): true if the canvas shows its complete picture (page/cover.js). quality, memory,
-// skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
+// fail(words): show a failure on the cover (before/failures.js). page: the name of this page. line: the connection to the lab
+// (before/connection.js): the number of messages heard and of beats, the time [s] to wait for a large message on its way,
+// whether it is open, close(), and hurry(time [ms]), which shortens the attempt to connect. isRecording: true while a clip is
+// recorded. awaitPicture(): the scene is another one. showsWhole(): true if the canvas shows its complete picture
+// (page/cover.js). quality, memory, skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
 
 /** @type {Springtide} */
 export const springtide = (globalThis.__springtide ??= {});

@@ -1,5 +1,7 @@
 // Access of all files to viser's window.__viserMutable, which its own tests read.
 
+import { springtide } from "./springtide.js";
+
 export const viewer = () => window.__viserMutable;
 
 // The same for code that runs only after viser's client has begun to draw.
@@ -55,4 +57,4 @@ export function connectionNumber() {
   return connection;
 }
 
-export const PAGE = Math.random().toString(36).slice(2, 10); // distinguishes this page from others; viser passes on changes only
+export const PAGE = springtide.page ?? ""; // distinguishes this page from others; viser passes on changes only

@@ -1,27 +1,32 @@
 // Words of the page while nothing is drawn, and after the server has ended.
 //
 // The cover is shown from the first bytes of the page until the picture of the scene is complete (frames.js). While a scene is
-// compiled it shows the panel's progress (an element of class "springtide-progress"). It returns when the server does not
-// answer. If the page cannot start, it shows the reason (before/failures.js).
+// compiled it shows the panel's progress (an element of class "springtide-progress"). It returns when there is no connection
+// and the server does not answer. If the page cannot start or may not connect, it shows the reason (before/failures.js).
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
+import { connectionNumber } from "../core/viewer.js";
 import { onChange, onLook } from "../core/watch.js";
 import { awaitsPicture, pictured, showCover } from "../scene/cover.js";
 
-const ALIVE_INTERVAL = 2000; // [ms] between two checks that the server answers
-const RETRY_INTERVAL = 1000; // [ms] the same after a check without an answer
-const ANSWER_TIME = 5000; // [ms] after which a check has failed
-const MAX_UNANSWERED = 3; // failed checks in a row: a laptop that wakes up, or changes its network, misses one
+const ALIVE_INTERVAL = 2000; // [ms] between two looks at the connection
+const RETRY_INTERVAL = 1000; // [ms] between two questions to the server without one
+const ANSWER_TIME = 5000; // [ms] after which a question has failed
+const ATTEMPT_TIME = 2000; // [ms] for an attempt to connect to a server that answers
+const MAX_UNANSWERED = 3; // failed questions in a row: a laptop that wakes up, or changes its network, misses one
 // A path belongs to a proxy, such as a JupyterHub, or to a pane of a comparison.
 const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
 const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
-let unanswered = 0;
+let unanswered = 0, isSilent = false; // true if the last question had no answer in time, not even a refusal
 let server = ""; // name of the server, which differs for each server
+let refusal = ""; // reason why this page may not connect
 
 let waiting = "Connecting to the lab …"; // while there is no panel
 function update() {
-  if (unanswered >= MAX_UNANSWERED) return showCover(`The lab has stopped. ${restart}`, false);
+  if (unanswered >= MAX_UNANSWERED) {
+    return showCover(isSilent ? "The lab does not answer. This page goes on as soon as it does." : `The lab has stopped. ${restart}`, false);
+  }
   const progress = document.querySelector(".springtide-progress");
   if (progress) {
     waiting = progress.textContent;
@@ -34,29 +39,44 @@ function update() {
     const isAwaited = awaitsPicture(document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "");
     return showCover(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
   }
-  return showCover(springtide.failure || waiting, false);
+  return showCover(springtide.failure || refusal || waiting, false);
 }
 
-// Name of the server; "" if it does not answer.
+// The server's answer: its name, and the reason if this page may not connect. Null without an answer.
 async function askServer() {
   try {
-    const answer = await fetch("springtide-alive", { cache: "no-store", signal: AbortSignal.timeout(ANSWER_TIME) });
-    return answer.ok ? await answer.text() : "";
-  } catch {
-    return "";
+    const question = `springtide-alive?origin=${encodeURIComponent(location.origin)}`;
+    const answer = await fetch(question, { cache: "no-store", signal: AbortSignal.timeout(ANSWER_TIME) });
+    isSilent = false;
+    return answer.ok ? (await answer.text()).split("\n") : null;
+  } catch (error) {
+    isSilent = error instanceof DOMException && error.name === "TimeoutError";
+    return null;
   }
 }
 
+const isConnected = () => Boolean(springtide.line?.isOpen);
+
+let known = -1; // number of the connection to which the name of the server belongs
+
+// The connection itself says that the lab is there (line.js). Without one, a question says whether it has ended, and with each
+// new one whether it is still the same.
 async function ask() {
-  const name = document.visibilityState === "visible" ? await askServer() : null;
-  if (name !== null) {
-    unanswered = name ? 0 : unanswered + 1;
-    server ||= name;
+  const connection = connectionNumber();
+  if (isConnected() && server && connection === known) {
+    unanswered = 0;
+  } else if (document.visibilityState === "visible") {
+    const answer = await askServer();
+    unanswered = answer || isConnected() ? 0 : unanswered + 1;
+    const [name, reason = ""] = answer ?? [""];
+    [server, refusal] = [server || name, reason];
+    if (name && isConnected()) known = connection;
     // A new server does not know this page: reload, unless a clip is being recorded.
     if (name && name !== server && !springtide.isRecording) return void location.reload();
-    update();
+    if (name && !isConnected()) springtide.line?.hurry(ATTEMPT_TIME);
   }
-  timer = setTimeout(ask, unanswered ? RETRY_INTERVAL : ALIVE_INTERVAL);
+  update();
+  timer = setTimeout(ask, isConnected() ? ALIVE_INTERVAL : RETRY_INTERVAL);
 }
 
 let timer = setTimeout(ask, 0);

@@ -56,7 +56,8 @@ onFrame((now) => {
     store(KEY, "yes");
     return remove();
   }
-  const end = freeEnd(view), place = end && document.querySelector("#springtide-cover.springtide-hidden") ? end : null;
+  const isStopped = document.querySelector(".springtide-stopped") !== null; // Play or Reset is what helps there
+  const end = isStopped ? null : freeEnd(view), place = end && document.querySelector("#springtide-cover.springtide-hidden") ? end : null;
   if (place) since ||= now;
   if (since && now - since > SHOWN) return remove();
   if (place) hint ??= makeHint();

@@ -3,6 +3,7 @@
 /** @type {Record<string, () => Promise<object>>} */
 const PARTS = {
   cover: () => import("./cover.js"),
+  line: () => import("./line.js"),
   marks: () => import("../panel/marks.js"),
   scene: () => import("../scene/main.js"),
   camera: () => import("./camera.js"),
@@ -13,6 +14,7 @@ const PARTS = {
   share: () => import("../sharing/share.js"),
   scenes: () => import("../panel/scenes.js"),
   visited: () => import("../sharing/visited.js"),
+  acts: () => import("../panel/acts.js"),
   display: () => import("../panel/display.js"),
   accessibility: () => import("../panel/accessibility.js"),
   reach: () => import("./reach.js"),

@@ -145,7 +145,7 @@ function nameFields() {
 /** @type {Record<string, string>} */
 const HINTS = {
   Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
-  Camera: "Reset the camera (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
+  Camera: "Reset the camera (V)", Plots: "Open or close the plots (P)", Undo: "",
 };
 /** @type {Record<string, string>} */
 const ARROWS = { "◀": "Previous task", "▶": "Next task" };

@@ -6,20 +6,20 @@
 // Of viser this file uses the charts of the page.
 
 import { page } from "../core/life.js";
+import { notice } from "../core/notice.js";
 import { PAGE, send } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "../panel/charts.js";
 import { download, toggleClip } from "./clip.js";
+import { arrive, copyNext } from "./copy.js";
 import { sendText } from "./inbox.js";
 import { labAt, ofLab, setupIn } from "./links.js";
 import { rowsOf } from "../panel/rows.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay
-const ASKED = 3000; // [ms] after a press of "Copy link" for the link to arrive
 const asked = new URLSearchParams(location.search);
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
-let pressed = -Infinity;
 
 // Request a file from the server, by a hidden button of the panel.
 /** @param {string} value */
@@ -32,20 +32,35 @@ sentences.textContent =
   `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
 document.head.append(sentences);
 
-// Copy a link to the clipboard, or select it if the browser refuses or the page has no encryption.
-/** @param {HTMLAnchorElement} link */
-async function copy(link) {
+const KEYS = /Mac|iP/.test(navigator.platform) ? "⌘C" : "Ctrl+C";
+/** @type {HTMLAnchorElement | null} */
+let latest = null; // the link that this page has asked for
+
+// Say below the link what came of the press.
+/** @param {string} text */
+function sayCopied(text) {
+  const said = document.createElement("div");
+  said.className = "springtide-copied";
+  said.setAttribute("role", "status");
+  said.textContent = text;
+  latest?.parentElement?.querySelector(".springtide-copied")?.remove();
+  latest?.before(said);
+}
+
+async function copyLink() {
+  notice("springtide-copy", "");
   try {
-    await navigator.clipboard.writeText(link.href);
-  } catch {
-    getSelection()?.selectAllChildren(link);
-    const hint = document.createElement("div");
-    hint.setAttribute("role", "status");
-    hint.textContent = `Press ${/Mac|iP/.test(navigator.platform) ? "⌘C" : "Ctrl+C"} to copy this link.`;
-    link.after(hint);
+    const isCopied = await copyNext(navigator.clipboard, Reflect.get(window, "ClipboardItem")); // which is newer than the oldest browsers
+    if (!isCopied && latest) getSelection()?.selectAllChildren(latest);
+    sayCopied(isCopied ? "Copied to the clipboard:" : `The browser did not copy it. Press ${KEYS} to copy this link:`);
+  } catch (error) {
+    if (error instanceof Error && error.message === "late") {
+      notice("springtide-copy", "The lab sent no link, so nothing was copied. Press Copy link again.");
+    }
   }
 }
 
+// The lab gives each link a number, so that a second press is answered too.
 function completeLinks() {
   /** @type {NodeListOf<HTMLAnchorElement>} */
   const links = document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])");
@@ -53,7 +68,7 @@ function completeLinks() {
     link.dataset.springtideDone = "";
     link.href = labAt(location) + link.dataset.springtideLink;
     link.textContent = link.href;
-    if (performance.now() - pressed < ASKED) copy(link);
+    if (arrive(link.href)) latest = link;
   }
 }
 
@@ -73,11 +88,12 @@ function update() {
 /** @param {HTMLElement} button */
 function saveCharts(button) {
   const charts = chartsOfPage();
-  if (!charts.length) {
-    button.textContent = "Open a plot first";
+  /** @param {string} words */
+  const refuse = (words) => {
+    button.textContent = words;
     setTimeout(() => (button.textContent = "Save plots"), 3000);
-    return;
-  }
+  };
+  if (!charts.length) return refuse("Open a plot first");
   const ratio = devicePixelRatio, line = 26 * ratio;
   const sheet = document.createElement("canvas");
   const pen = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
@@ -119,7 +135,9 @@ function saveCharts(button) {
     }
     top += rows[i] * line;
   });
-  sheet.toBlob((content) => content && download(content, "springtide-plots.png"));
+  sheet.toBlob((content) => {
+    if (!content || !download(content, "springtide-plots.png")) refuse("No picture was made");
+  });
 }
 
 page.listen(document, ["pointerdown", "keydown"], ({ isTrusted, target }) => {
@@ -131,7 +149,7 @@ const choiceOf = (selector) => /** @type {HTMLSelectElement | null} */ (document
 page.listen(document, "click", (event) => {
   const button = event.target instanceof Element && event.target.closest("button");
   if (!button) return;
-  if (button.textContent === "Copy link") pressed = performance.now();
+  if (button.textContent === "Copy link") copyLink();
   if ("springtideClip" in button.dataset) toggleClip();
   if (!("springtideCharts" in button.dataset)) return;
   const form = choiceOf("[data-springtide-plots]");

@@ -264,7 +264,7 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
         loop.tick(0.3)
         assert loop.run.counts["steps"] - before <= 1
     assert loop.latest.status.capped
-    assert "slower than real time" in status_line(loop.latest)
+    assert "slower than set" in status_line(loop.latest)
     assert "Faster: fewer rows and columns" in status_line(loop.latest)
     assert loop.run.fixed_step.dropped > 100
     assert "corrections a step" in ClothView.readout(object.__new__(ClothView), loop.latest)

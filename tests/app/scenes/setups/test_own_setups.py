@@ -39,25 +39,6 @@ def test_what_is_kept_is_listed_replaced_and_removed(kind: Any) -> None:
         keep(kind, "", 3)
 
 
-def test_files_that_cannot_be_read_hide_no_set_up_and_take_no_number(kind: Any) -> None:
-    keep(kind, "zeta", 9)
-    for number in range(own_setups.MAX_OWN + 2):
-        (folder_of(kind) / f"a{number}.json").write_text("{", "utf-8")
-        (folder_of(kind) / f"set-up-zeta{number}.json").write_text("{", "utf-8")
-    assert [*own_files(kind)] == ["zeta"]
-    keep(kind, "Zeta", 10)  # the same words in a file name
-    keep(kind, "zeta", 11)
-    assert {name: setup.params.points for name, (_, setup) in own_files(kind).items()} == {"Zeta": 10, "zeta": 11}  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize("name", ["con", "NUL", "aux", "prn", "com1", "..."])
-def test_no_file_has_a_name_that_windows_reserves(kind: Any, name: str) -> None:
-    keep(kind, name, 9)
-    ((path, _),) = own_files(kind).values()
-    assert path.stem.startswith("set-up-")
-    assert [*own_files(kind)] == [name]
-
-
 def test_files_that_are_no_set_ups_are_left_out_and_the_number_is_bounded(
     kind: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,3 +56,23 @@ def test_files_that_are_no_set_ups_are_left_out_and_the_number_is_bounded(
     keep(kind, "Good", 10)
     with pytest.raises(ValueError, match="at most 1: remove one first"):
         keep(kind, "More", 10)
+
+
+def test_files_that_cannot_be_read_hide_none_that_can_however_many_they_are(
+    kind: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(own_setups, "MAX_OWN", 2)
+    keep(kind, "zeta", 9)
+    for number in range(5):
+        (folder_of(kind) / f"a{number}.json").write_text("{", "utf-8")
+    keep(kind, "zeta", 10)
+    keep(kind, "eta", 11)
+    assert {name: setup.params.points for name, (_, setup) in own_files(kind).items()} == {"eta": 11, "zeta": 10}  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="at most 2: remove one first"):
+        keep(kind, "theta", 12)
+
+
+@pytest.mark.parametrize("name", ["con", "NUL", "aux", "com1", "?"])
+def test_a_name_that_windows_reserves_is_none_of_a_file(kind: Any, name: str) -> None:
+    keep(kind, name, 9)
+    assert own_files(kind)[name][0].name.startswith("set-up")

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Checkpoint, Command, StepOnce, TogglePlay
+from app.messages import Checkpoint, Command, GrabTo, Place, Release, StepOnce, TogglePlay
 from app.panel.settings import SceneSettings
 from app.scenes import NAMES, scene_named
 from app.scenes.ahead.compiling import Compiling, Job
@@ -70,6 +70,7 @@ class Model:
     def __init__(self, params: Any, preset: str) -> None:
         self.screen = Screen(params, preset, RunSeen(), True)
         self.before: list[Screen] = []
+        self.after: list[Screen] = []
 
     def act(
         self, params: Any, preset: str = "", *, begins: bool, runs: bool = False, run: RunSeen | None = None
@@ -78,6 +79,7 @@ class Model:
         now = self.screen
         now.run.running = bool(now.running)
         self.before.append(now)
+        self.after.clear()
         if not begins:
             now.run.arrays = None
         self.screen = Screen(
@@ -86,9 +88,18 @@ class Model:
 
     def undo(self) -> None:
         """The screen before the last act; a run continues from where it is, or from where it was left."""
-        if not self.before:
+        self.go(self.before, self.after)
+
+    def redo(self) -> None:
+        """The screen after the act that was undone last."""
+        self.go(self.after, self.before)
+
+    def go(self, source: list[Screen], target: list[Screen]) -> None:
+        if not source:
             return
-        now, self.screen = self.screen, self.before.pop()
+        now, self.screen = self.screen, source.pop()
+        now.run.running = bool(now.running)
+        target.append(now)
         if self.screen.run is now.run:
             self.screen.running = now.running
             now.run.arrays = None
@@ -213,9 +224,35 @@ class Lab:
             self.model.act(params, begins=True, runs=True, run=run)
             self.settings.resume(params, state)
 
+    def pull(self) -> None:
+        """A drag of a point or a body, from press to release."""
+        if self.gate.held:
+            self.settle()
+        now = self.model.screen
+        run = RunSeen(now.run.time, None, moments=list(now.run.moments))
+        self.model.act(now.params, begins=True, run=run)
+        for place in ((0.1, 0.0, 0.2), (0.2, 0.0, 0.2)):
+            self.settings.drag(GrabTo(1, place, 7))
+        self.settings.drag(Release(7))
+
+    def place(self) -> None:
+        """The same of something with arrows."""
+        if self.gate.held:
+            self.settle()
+        now = self.model.screen
+        run = RunSeen(now.run.time, None, moments=list(now.run.moments))
+        self.model.act(now.params, begins=True, run=run)
+        for x in (0.1, 0.2):
+            self.settings.drag(Place("sphere", (x, 0.0, 0.2)))
+        self.settings.history.number = ""  # later
+
     def undo(self) -> None:
         self.model.undo()
         self.settings.undo()
+
+    def redo(self) -> None:
+        self.model.redo()
+        self.settings.redo()
 
     # ----- between acts
 
@@ -274,9 +311,10 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
     lab = Lab(name, rng, compiles=compiles)
     acts = [
         lab.look, lab.force, lab.several, lab.start, lab.drag, lab.preset, lab.reset, lab.plots, lab.advice, lab.moment,
+        lab.pull, lab.place,
     ]  # fmt: skip
     for _ in range(rng.randint(1, MAX_ACTS)):
-        rng.choice([*acts, *[lab.undo] * 4])()
+        rng.choice([*acts, *[lab.undo] * 4, *[lab.redo] * 2])()
         between = rng.random()
         if between < 0.25:
             lab.step()
@@ -292,6 +330,12 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
         if rng.random() < 0.7:
             lab.see()
     lab.undo()  # which does nothing
+    lab.see()
+    while lab.model.after:
+        lab.redo()
+        if rng.random() < 0.7:
+            lab.see()
+    lab.redo()
     lab.see()
 
 

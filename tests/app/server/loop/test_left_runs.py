@@ -87,6 +87,39 @@ def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch:
     assert not loop.run.snapshots.status().restarted
 
 
+def test_the_words_on_a_run_that_is_not_kept_go_with_that_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    loop = begun("rope")
+    params = loop.scene.params
+    loop.handle(Reset(2))
+    monkeypatch.setattr(runs, "MAX_BYTES", 0.0)
+    loop.runs.left = runs.LeftRuns()
+    loop.handle(Take(params, start=True, act=1, back=True))
+    assert loop.run.snapshots.status().restarted
+    loop.handle(Reset(3))
+    assert not loop.run.snapshots.status().restarted
+
+
+@pytest.mark.parametrize("change", ["undo", "moment"])
+def test_a_speed_never_crosses_two_runs(change: str) -> None:
+    loop = begun("rope")
+    params, moment = loop.scene.params, loop.scene.keep()
+    loop.handle(Play())
+    go_on(loop)
+    loop.handle(Reset(2))
+    loop.handle(Play())
+    loop.tick(0.1)
+    command = Take(params, start=True, act=1, back=True)
+    loop.handle(command if change == "undo" else Take(params, state=Checkpoint(moment, {}, 1), act=3))
+    speeds: list[float | None] = []
+    for _ in range(20):
+        loop.tick(0.1)
+        speeds.append(loop.latest.status.actual_speed)
+    known = [speed for speed in speeds if speed is not None]
+    assert speeds[0] is None
+    assert len(known) > 10
+    assert all(0.5 < speed < 1.5 for speed in known), known
+
+
 def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
     loop = begun("rope")
     loop.handle(Reset(2))

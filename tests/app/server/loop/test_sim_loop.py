@@ -331,9 +331,9 @@ def test_a_frame_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays
 
 def test_a_halt_from_outside_is_said() -> None:
     loop, _ = make()
-    loop.commands.put(Halt("The picture could not be updated"))
+    loop.commands.put(Halt("The picture could not be drawn"))
     loop.tick(FRAME_INTERVAL)
-    assert loop.latest.status.halted == "The picture could not be updated"
+    assert loop.latest.status.halted == "The picture could not be drawn"
     assert not loop.latest.status.running
 
 

@@ -20,11 +20,16 @@ NODES = 12  # of the drawing, a mesh and a place each
 PICTURES = 300
 
 
-def decoded(sent: bytes) -> list[dict[str, Any]]:
-    """The messages of one websocket message of viser's."""
+def unpacked(sent: bytes) -> dict[str, Any]:
+    """The content of one websocket message of viser's."""
     size = int.from_bytes(sent[8:16], "little")
     inner = zstandard.ZstdDecompressor().decompress(sent[16 : 16 + size], max_output_size=100_000_000)
-    return msgspec.msgpack.decode(inner)["messages"]
+    return msgspec.msgpack.decode(inner)
+
+
+def decoded(sent: bytes) -> list[dict[str, Any]]:
+    """The messages of one websocket message of viser's."""
+    return unpacked(sent)["messages"]
 
 
 class SlowDict(dict):

@@ -9,7 +9,7 @@ from sim.jit import kernel
 STIFFNESS = 0  # K
 DAMPING = 1  # D
 TRANSVERSE = 2  # the part of K across the links, which axial damping does not reach
-FRICTION = 3  # M over what slides along floor or sphere: friction's strongest damping, times h
+FRICTION = 3  # M over what slides along floor or sphere: h D of friction that stops a point within a step
 STIFFEST = 4  # K of links that are as stiff as any may soon be
 
 

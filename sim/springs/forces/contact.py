@@ -163,7 +163,7 @@ def push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, on_sphere)
     if mean.shape[0] > 0:
         mean[j], mean[n + j], mean[2 * n + j] = mu + su, mv + sv, mw + sw
     v[j], v[n + j], v[2 * n + j] = u + su, q + sv, r + sw
-    # What is left of its change of momentum is that of the damping.
+    # The damping gave the rest of the change of momentum.
     du, dv, dw = u - ru - s * (ax - c * mu), q - rv - s * (ay - c * mv), r - rw - s * (az - c * mw)
     return (du * su + dv * sv + dw * sw) / w
 
@@ -332,7 +332,7 @@ FORCE = Force(
     "contact", rank=40, nets=SPRING_NETS, acts="p.has_floor or p.has_sphere", accelerate=accelerate, damp=damp,
     energy=energy, power=power, tangent=tangent, blocks=blocks, stores="contact",
 )  # fmt: skip
-# What is left of its damping where `kick_touching` has the rest inside.
+# The part of its damping that `kick_touching` leaves.
 LEFT_OF_DAMPING = Force(
     "friction", rank=40, nets=SPRING_NETS, damp=rub,
     acts="p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)",

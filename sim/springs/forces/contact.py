@@ -117,7 +117,7 @@ def push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, on_sphere)
     if mean.shape[0] > 0:
         mean[j], mean[n + j], mean[2 * n + j] = mu + su, mv + sv, mw + sw
     v[j], v[n + j], v[2 * n + j] = u + su, q + sv, r + sw
-    # What is left of its change of momentum is that of the damping.
+    # The damping gave the rest of the change of momentum.
     du, dv, dw = u - ru - s * (ax - c * mu), q - rv - s * (ay - c * mv), r - rw - s * (az - c * mw)
     return (du * su + dv * sv + dw * sw) / w
 

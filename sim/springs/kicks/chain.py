@@ -16,7 +16,7 @@ from sim.springs.kicks.dampers import turning_time
 from sim.springs.kicks.formula import ALPHA
 
 
-class Chain(NamedTuple):
+class ChainSystem(NamedTuple):
     """Factors and scratch for kicks of one time s of a rope of n points."""
 
     eased: NDArray[np.complex128]  # (n,) 1 / (1 + alpha s c w) of each point
@@ -28,13 +28,14 @@ class Chain(NamedTuple):
 
 @kernel
 def make_chain(p, s, wanted):
-    """For kicks of a time s [s]; not wanted: of no points."""
+    """Return the system for kicks of a time s [s]; not wanted: of no points."""
     n = p.cols if wanted else 0
     eased, mobility = np.zeros(n, np.complex128), np.zeros(n, np.complex128)
     for j in range(n):
         eased[j] = 1.0 / (1.0 + ALPHA * (s * p.drag * p.inverse_masses[j]))
         mobility[j] = ALPHA * (s * p.inverse_masses[j]) * eased[j]
-    return Chain(eased, mobility, np.zeros(3 * n, np.complex128), np.zeros(n, np.complex128), np.zeros_like(mobility))
+    force = np.zeros(3 * n, np.complex128)
+    return ChainSystem(eased, mobility, force, np.zeros_like(mobility), np.zeros_like(mobility))
 
 
 @kernel(noalias=True, allocates=False)

@@ -25,7 +25,7 @@ SAME = 1e-9  # relative change of a limited force that does not count
 
 
 class Dampers(NamedTuple):
-    """Of each link, by its number."""
+    """The dampers of all links, by their numbers."""
 
     acting: NDArray[np.float64]  # (links,) damping where it is linear, else 0 [N s/m]
     limited: NDArray[np.float64]  # (3 links,) constant force on its first point where it is not [N]
@@ -35,7 +35,7 @@ class Dampers(NamedTuple):
 
 @each_link()
 def set_whole(link, p, dampers):
-    """All dampers act whole."""
+    """Let all dampers act whole."""
     n = dampers.acting.shape[0]
     dampers.acting[link.number] = link.damping
     for e in range(3):

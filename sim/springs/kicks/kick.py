@@ -75,7 +75,7 @@ kind_of = by_net(rope=net_kind, grid=net_kind, lines=split_kind)
 
 
 class KickRoom(NamedTuple):
-    """How the kicks of a call are taken, and their scratch."""
+    """The way in which the kicks of a call are taken, and their scratch."""
 
     kind: int
     share: NDArray[np.float64]  # (points,) time for which w = a - c v / m changes v, where drag is exact [s]
@@ -85,7 +85,7 @@ class KickRoom(NamedTuple):
     load: NDArray[np.float64]  # (3 points,) accelerations by all but linear dampers [m/s2]
     force: NDArray[np.float64]  # (3 points,) mean forces of dampers [N]
     dampers: Dampers
-    system: Any  # `Chain` of a rope, `Sheet` of another net, `LinesRoom` of lines
+    system: Any  # `ChainSystem` of a rope, `SheetSystem` of another net, `LinesRoom` of lines
 
 
 make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)))
@@ -178,7 +178,7 @@ def set_drag_mean(v, a, p, share, mean):
 
 @kernel(allocates=False)
 def close_kick(v, a, s, p, kinetic, put_in, mean, ledger):
-    """Book what damping took in a kick for a time s [s] from the kinetic energy `kinetic` [J].
+    """Book the loss to damping in a kick for a time s [s] that began with the kinetic energy `kinetic` [J].
 
     The forces of position do the work of the path, whose mean velocities are `mean`; what is not kinetic energy after
     it has been dissipated. What moving pins put in through the dampers, `put_in` [J], is dissipated, too.

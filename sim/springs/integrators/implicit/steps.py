@@ -49,7 +49,7 @@ C0 = 1.0 - C1
 
 # Error of the solver over the method's own in a step: so small that their sums over many steps stay below a third.
 SOLVER_SHARE = 0.05
-COARSE = 2e-4  # and over the change of velocity, where the step is too long for an estimate of the method's own
+COARSE = 1e-4  # and over the change of velocity, where the step is too long for an estimate of the method's own
 SETTLED = 1e-11  # error relative to the velocities below which nothing more is asked
 ROUND_OFF = 4e-15  # and relative to the farthest position over g, below which corrections are noise
 # A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most TRIES
@@ -63,17 +63,18 @@ class Limits(NamedTuple):
 
     order: int
     error: float  # of one step, see `local_error`
-    usable: float  # error over velocity and its change, of a stage that may be taken unsettled
+    usable: float  # error of a net over velocity and its change, of a stage that may be taken unsettled
+    usable_of_rope: float  # the last correction of a chain over its fastest velocity, of such a stage
     most: int  # corrections of a net
     most_of_rope: int
     finest: int  # parts of a step
 
 
-# Implicit Euler damps errors most, TR-BDF2 less. Halves of a midpoint are quicker than more corrections.
-OF_EULER = Limits(1, 1 / 2, 1.0, 24, 25, 16)
-OF_MIDPOINT = Limits(2, 1 / 6, 1.0, 36, 12, 64)
-OF_TR_BDF2 = Limits(2, 1 / 7, 1e-3, 60, 25, 16)
-USABLE_OF_ROPE = 1e-3  # the last correction of a chain over its fastest velocity
+# Implicit Euler damps errors most, TR-BDF2 less; the energy of a chain's midpoint shows each. Halves of a midpoint are
+# quicker than more corrections.
+OF_EULER = Limits(1, 1 / 2, 1.0, 1e-3, 24, 25, 16)
+OF_MIDPOINT = Limits(2, 1 / 6, 0.1, 0.0, 36, 12, 64)
+OF_TR_BDF2 = Limits(2, 1 / 7, 1e-3, 1e-3, 60, 25, 16)
 
 
 class Work(NamedTuple):
@@ -159,7 +160,7 @@ def solve_rope_stage(x0, v0, a0, g, t, limits, p, x, v, work):
         # A NaN ends the search too: it only spreads.
         if settled or not size <= np.inf:
             break
-    return count, count, settled, settled or size <= min(USABLE_OF_ROPE, limits.usable) * largest(v)
+    return count, count, settled, settled or size <= limits.usable_of_rope * largest(v)
 
 
 @kernel(inline=True)

@@ -13,6 +13,7 @@ from sim.springs.integrators.implicit.steps import GAMMA
 from sim.springs.net import link_table
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.state import State, advance
+from tests.sim.springs.nets import FAMILIES
 from tests.sim.springs.reference import exact, integrated, slope
 
 
@@ -58,12 +59,12 @@ class Reference:
         r = residual(v)
         for _ in range(100):
             u, part = splu(self.matrix(X + g * v, g)).solve(r), 1.0
+            if np.abs(u).max() <= 1e-9 * np.abs(v).max():
+                return X + g * (v + u), v + u
             while part > 1e-3 and np.linalg.norm(residual(v + part * u)) > (1.0 - 0.1 * part) * np.linalg.norm(r):
                 part *= 0.5
             v += part * u
             r = residual(v)
-            if np.abs(u).max() <= 1e-12 * max(np.abs(v).max(), 1e-3 * np.abs(X).max() / g):
-                return X + g * v, v
         raise AssertionError("the reference does not converge")
 
     def step(self, name, x, v, h):
@@ -95,45 +96,46 @@ def test_a_long_rope_of_unequal_masses_is_solved_to_round_off(name, points):
 
 
 @pytest.mark.parametrize("name", ["implicit_euler", "tr_bdf2"])
-def test_a_long_rope_that_may_touch_itself_is_solved_as_one_that_never_does(name):
-    """By the factors of a net, with tolerances of its own."""
+def test_a_long_net_of_one_row_is_solved_as_the_rope_that_it_is(name):
+    """By the factors of a net, as it has links that skip points, without stiffness; with tolerances of its own."""
     net = rope(600, 5.0, 0.02, 1e5, 0.5, 0.01)
     chain, wide = State.at_rest(net), State.at_rest(net)
     advance(net, chain, name, 1 / 240, 24)
-    advance(dataclasses.replace(net, thickness=1e-4), wide, name, 1 / 240, 24)
+    other = (family._replace(stiffness=0.0, damping=0.0) for family in FAMILIES[1:])
+    advance(dataclasses.replace(net, families=(*net.families, *other)), wide, name, 1 / 240, 24)
     assert wide.unsettled == 0
     assert wide.x == pytest.approx(chain.x, abs=1e-4)
 
 
-def strip(rows: int, cols: int, stretch: float, noise: float) -> tuple[Net, State]:
+def strip(rows: int, cols: int, stretch: float, noise: float, speed: float) -> tuple[Net, State]:
     """A hanging strip of cloth, held along its upper edge, its points displaced and in motion."""
     flat = cloth(rows, cols, 0.01 * cols, 0.01 * rows, 1.0, 2e4, 1e4, 2e3, 0.05, pinned="edge")
     net = vertical_cloth(flat)
     state, rng = State.at_rest(net), np.random.default_rng(0)
     free = net.inverse_masses().reshape(net.shape) > 0.0
     state.x[:] = net.x0 * (1.0 + stretch) + noise * rng.standard_normal(net.x0.shape) * free
-    state.v[:] = 0.2 * rng.standard_normal(net.x0.shape) * free
+    state.v[:] = speed * rng.standard_normal(net.x0.shape) * free
     return net, state
 
 
 @pytest.mark.parametrize(
     ("rows", "cols"), [(6, 255), (6, 256), (6, 257), pytest.param(40, 300, marks=pytest.mark.long)]
 )
-@pytest.mark.parametrize("name", ["implicit_euler", "tr_bdf2"])
-def test_a_step_of_a_stretched_cloth_settles_where_newton_s_method_does(name, rows, cols):
-    net, state = strip(rows, cols, 0.03, 2e-5)
-    h = 1 / 240
+@pytest.mark.parametrize(("name", "h"), [("implicit_euler", 1 / 240), ("tr_bdf2", 1 / 4800)])
+def test_a_step_of_a_stretched_cloth_settles_where_newton_s_method_does(name, h, rows, cols):
+    net, state = strip(rows, cols, 0.03, 2e-5, 0.05)
     expected = Reference(net).run(name, state, h, 1)
     before = state.x.copy()
     advance(net, state, name, h, 1)
-    assert np.abs(expected - before).max() > 1e-4
+    motion = np.abs(expected - before).max()
+    assert motion > 1e-4
     assert state.unsettled == 0
-    assert state.x == pytest.approx(expected, abs=1e-5)
+    assert state.x == pytest.approx(expected, abs=min(1e-5, 0.01 * motion))
 
 
 @pytest.mark.parametrize(("rows", "cols"), [(6, 256), (6, 257), pytest.param(40, 300, marks=pytest.mark.long)])
 def test_a_step_of_a_crumpled_cloth_settles_where_newton_s_method_does_or_is_counted(rows, cols):
-    net, state = strip(rows, cols, 1e-3, 2e-4)
+    net, state = strip(rows, cols, 1e-3, 2e-4, 0.2)
     expected = Reference(net).run("implicit_euler", state, 1 / 240, 1)
     advance(net, state, "implicit_euler", 1 / 240, 1)
     assert state.unsettled == 1 or np.abs(state.x - expected).max() < 1e-5

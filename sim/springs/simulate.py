@@ -68,7 +68,7 @@ def simulate(
     duration, frames: 2 s and 61 of a net by default, 10 s and 101 of a mooring.
     step: [s], by default half the critical step at the start, for a net at most 1/1200; shortened if it does not divide
     a frame interval (`step` of the run is the one used). A given step is used, however long: see
-    `sim.springs.critical_step`.
+    `sim.springs.critical_step`, and `accurate_step` for what is stable but not right.
     integrator: a name in `INTEGRATORS`, "rk4" of a net and "leapfrog" of a mooring by default. For a net also "auto",
     which chooses an adaptive method by the net's damping and the tolerance, or by the step (sim/springs/automatic.py);
     `integrator` of the run names it.

@@ -457,7 +457,7 @@ def accurate_step(
 
     >>> from sim.springs import accurate_step, rope
     >>> round(accurate_step(rope(points=10, stiffness=800.0), "implicit_euler"), 4)  # [s]
-    0.0091
+    0.0077
     """
     check_positive("tolerance", tolerance, "")
     record = integrator_named(integrator)

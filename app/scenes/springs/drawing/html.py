@@ -97,7 +97,8 @@ def step_mark(critical_step: float, accurate_step: float = math.nan) -> str:
         return limit
     if accurate_step >= critical_step:
         return f"{limit}, right below it"
-    return f"{limit}, right up to {longest_step(rounded_down(accurate_step))}" if accurate_step > 0.0 else limit
+    right = f"up to {longest_step(rounded_down(accurate_step))}" if accurate_step > 0.0 else "at no step"
+    return f"{limit}, right {right}"
 
 
 def rounded_down(step: float) -> float:

@@ -2,7 +2,9 @@
 
 import contextlib
 import dataclasses
+import html
 import math
+import re
 from typing import Any
 from unittest.mock import Mock
 
@@ -10,7 +12,7 @@ import numpy as np
 import pytest
 
 from app.messages import GrabTo, Place, Release, finite_vector
-from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
+from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, WRONG_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
 from app.scenes.rope import SCENE
@@ -403,7 +405,11 @@ def test_the_line_under_the_time_step_names_the_largest_that_is_stable() -> None
     assert step_mark(1 / 163) == step_mark(1 / 164) == "limit 1/170 s (5.9 ms)"
     assert [held(69_300.0), held(69_400.0), held(0.0), held(math.inf)] == [69_000.0, 69_000.0, 0.0, math.inf]
     assert step_mark(0.0) == "no step is stable with this method"
-    assert step_mark(math.inf) == "every step is stable"
+    assert step_mark(math.inf) == step_mark(math.inf, math.inf) == "every step is stable"
+    assert step_mark(0.0123, 0.0123) == "limit 1/82 s (12 ms), right below it"
+    assert step_mark(0.0123, 1 / 163) == "limit 1/82 s (12 ms), right up to 1/170 s (5.9 ms)"
+    assert step_mark(math.inf, 1 / 163) == "every step is stable, right up to 1/170 s (5.9 ms)"
+    assert step_mark(0.0123, 0.0) == "limit 1/82 s (12 ms), right at no step"
 
 
 @pytest.mark.parametrize(
@@ -413,6 +419,45 @@ def test_the_stability_bar_has_the_step_in_the_colour_of_its_verdict(h_omega: fl
     bar = stability_bar(Gauge(h_omega / 1e-3, 0.0, h_omega, 2.0, 2e-3, 1e-3 * h_omega, h_omega / 1e-3))
     assert coloured(f"{share}\u00a0%", colour) in bar
     assert f"width:{min(50.0 * h_omega, 100.0):.0f}%;background:{colour}" in bar
+    assert "right" not in share_and_verdict(bar)  # where accuracy is not assessed, nothing is said of it
+
+
+def share_and_verdict(bar: str) -> str:
+    """The line over the bar, as it is read."""
+    line = bar[: bar.index('<span class="springtide-info"')]
+    return html.unescape(re.sub("<[^>]*>", "", line)).replace("\xa0", " ").strip()
+
+
+STEP_OF_1_MS = Gauge(1e3, 0.1, 1.0, 2.0, 2e-3, 1e-3, 1e3, 2e-3, 0.003)
+
+
+def test_a_step_that_is_right_is_told_from_one_that_is_only_stable() -> None:
+    right = stability_bar(STEP_OF_1_MS)
+    assert share_and_verdict(right) == "Step: 50 % of the largest stable, right to 1 %"
+    assert GOOD_COLOUR in right
+    assert 'class="wrong"' not in right
+    wrong = stability_bar(STEP_OF_1_MS._replace(accurate_step=5e-4, error=0.034, accurate_method="implicit_midpoint"))
+    assert share_and_verdict(wrong) == "Step: 50 % of the largest stable, not right: 3.4 % off"
+    assert wrong.count(WRONG_COLOUR) == 3  # two words and the bar
+    assert '<div class="wrong" style="left:25%"></div>' in wrong  # hatched from there, not by colour alone
+    assert "Right: implicit midpoint at this step or this method up to 1/2000 s (500 µs)." in wrong.replace(
+        "\u202f", " "
+    )
+
+
+def test_of_a_method_without_a_limit_the_bar_shows_where_it_is_right() -> None:
+    gauge = STEP_OF_1_MS._replace(limit=math.inf, critical_step=math.inf, accurate_step=5e-4, error=1.7)
+    bar = stability_bar(gauge)
+    assert share_and_verdict(bar) == "Step: any is stable, not right: more than 100 % off"
+    assert f"width:100%;background:{WRONG_COLOUR}" in bar
+    assert 'style="left:50%"' in bar
+    assert share_and_verdict(stability_bar(gauge._replace(accurate_step=math.inf, error=0.0))).endswith("right to 1 %")
+
+
+def test_of_an_unstable_step_nothing_else_is_said() -> None:
+    bar = stability_bar(STEP_OF_1_MS._replace(step=3e-3, error=0.5, accurate_step=1e-3))
+    assert share_and_verdict(bar) == "Step: 150 % of the largest stable"
+    assert WRONG_COLOUR not in bar
 
 
 def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:

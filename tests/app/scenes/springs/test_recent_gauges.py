@@ -69,3 +69,19 @@ def test_a_divergence_says_the_number_of_the_line() -> None:
     said = re.search(r"was (\S+ %) of the largest stable", str(error.value).replace("\xa0", " "))
     assert said is not None
     assert text_of(scene).startswith(f"Step: {said[1]} of the largest stable")
+
+
+def test_the_least_accurate_of_the_last_seconds_counts_with_the_worst_share() -> None:
+    recent = Rope(RopeParams()).recent
+    recent.clear()
+    first = Rope(RopeParams(integrator="implicit_euler")).readings()
+    gauge = first.stability._replace(error=0.02, accurate_step=0.008, accurate_method="rk4")
+    recent.worst(0.0, first._replace(stability=gauge))
+    later = recent.worst(1.0, first._replace(stability=gauge._replace(error=0.015, accurate_step=0.011)))
+    assert (later.stability.error, later.stability.accurate_step, later.stability.accurate_method) == (
+        0.02,
+        0.008,
+        "rk4",
+    )
+    over = recent.worst(2.0 + SPAN, first._replace(stability=gauge._replace(error=0.001)))
+    assert over.stability.error == 0.001

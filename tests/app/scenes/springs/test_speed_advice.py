@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.scenes.springs.speed_advice import faster_steps
+from app.scenes.springs.speed_advice import accurate_steps, faster_steps, step_warnings
 from sim.springs import INTEGRATORS
 from sim.springs.stability import Gauge
 
@@ -31,3 +31,22 @@ def test_only_what_holds_and_helps_is_proposed(name, h_omega, text):
 def test_a_cloth_is_faster_without_contact_with_itself():
     found = faster_steps(INTEGRATORS["leapfrog"], gauge_of("leapfrog", 1.5), "rows and columns", touches_itself=True)
     assert found == "fewer rows and columns or no self-collision"
+
+
+def test_a_run_without_a_page_is_warned_of_a_step_that_is_stable_but_not_right():
+    gauge = gauge_of("leapfrog", 1.0)._replace(accurate_step=5e-4, error=0.034, accurate_method="rk4")
+    assert step_warnings(INTEGRATORS["leapfrog"], gauge) == [
+        "The time step of 1/1000 s (1 ms) is stable with leapfrog but not right: oscillation and damping are 3.4\u00a0% off. "
+        "Right: Runge-Kutta 4 at this step or this method up to 1/2\u202f000 s (0.5 ms)."
+    ]
+    assert step_warnings(INTEGRATORS["leapfrog"], gauge._replace(error=0.005)) == []
+    assert step_warnings(INTEGRATORS["leapfrog"], gauge._replace(step=1.0)) == []  # unstable: the run says so itself
+
+
+def test_what_is_right_is_named_as_far_as_anything_is():
+    gauge = gauge_of("leapfrog", 1.0)._replace(error=0.034)
+    assert accurate_steps(gauge._replace(accurate_step=0.0)) == "No method is right at this step."
+    assert (
+        accurate_steps(gauge._replace(accurate_step=0.0, accurate_method="tr_bdf2")) == "Right: TR-BDF2 at this step."
+    )
+    assert accurate_steps(gauge._replace(accurate_step=0.05)) == "Right: this method up to 1/20 s (50 ms)."

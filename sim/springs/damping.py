@@ -272,6 +272,6 @@ def is_odd(t, h, s):
 
 @kernel(allocates=False)
 def damp_lines(x, v, t, s, p, reverse):
-    """All damping of lines for a time s [s], with the inverse masses at the place where the step is."""
+    """Damping of lines that is not in their kick: friction of the bed, and that of declared forces."""
     set_inverse_masses(x, p)
     return damp_others(x, v, t, s, p, reverse)

@@ -14,7 +14,8 @@ To add a force, write a module in this folder with
 
 The forces without numbers of their own read those of the net's record. In ropes, cloths and other nets, links, gravity
 and drag accelerate in the hand-written loops over links of `sim/springs/points/acceleration.py`. Lines under water are
-nets with more forces, those of `under_water`: water, bed, bending, steady loads and the bodies that they hold.
+nets with more forces, those of `under_water`: water, bed, bending, steady loads and the bodies that they hold. Their
+damping has no `damp`, except friction: it is in the kick of `sim.springs.kicks.lines`.
 """
 
 from collections import namedtuple

@@ -53,6 +53,7 @@ from sim.springs.points.vector_ops import add_scaled
 
 GAMMA, STRETCH = 1.0 - math.sqrt(0.5), 1.0 + math.sqrt(2.0)
 SETTLED = 1e-3  # relative change of a node's mass and drag, below which Newton's next one is below its square
+NEAR = 0.1  # relative change of a drag, below which its logarithm is linear
 MAX_ROUNDS = 40
 NONE, ACTS, LIMITED = 0, 1, 2  # damping of a link
 
@@ -109,8 +110,7 @@ def open_kick(x, v, t, p, room):
                 wet = submerged(x, p, i, elevation)
                 room.drag[i, 0], room.drag[i, 1] = wet * p.parts[i].drag_across, wet * p.parts[i].drag_along
                 drags = drags or wet > 0.0
-        across, along = speeds(v, p, room, i)
-        room.drag[i, 2], room.drag[i, 3] = room.drag[i, 0] * across, room.drag[i, 1] * along
+    set_drag(v, p, room)
     for q in range(p.ends.shape[0]):
         link = link_at(p, q)
         _, _, _, length = stretch(x, p, link)
@@ -128,6 +128,14 @@ def speeds(v, p, room, i):
     x, y, z = room.flow[j] - v[j], room.flow[n + j] - v[n + j], room.flow[2 * n + j] - v[2 * n + j]
     along = x * room.along[i, 0] + y * room.along[i, 1] + z * room.along[i, 2]
     return math.sqrt(max(x * x + y * y + z * z - along * along, 0.0)), abs(along)
+
+
+@kernel(noalias=True, allocates=False)
+def set_drag(v, p, room):
+    """Set the drag over the speed to that at the velocities v."""
+    for i in range(p.places.shape[0]):
+        across, along = speeds(v, p, room, i)
+        room.drag[i, 2], room.drag[i, 3] = room.drag[i, 0] * across, room.drag[i, 1] * along
 
 
 @kernel(noalias=True, allocates=False)
@@ -303,7 +311,10 @@ def is_settled(v, p, tau, room):
             last, c = room.drag[i, 2 + e], room.drag[i, e] * found[e]
             if last > 0.0 and c > 0.0:
                 resists = w * last / (1.0 + w * last)
-                c = last * (c / last) ** (1.0 / (1.0 + resists))
+                if abs(c - last) < NEAR * last:
+                    c = last + (c - last) / (1.0 + resists)
+                else:
+                    c = last * (c / last) ** (1.0 / (1.0 + resists))
             room.drag[i, 2 + e] = c
             change = max(change, w * abs(c - last) / (1.0 + w * last))
     for q in range(p.ends.shape[0]):
@@ -377,6 +388,8 @@ def kick_lines(x, v, a, t, s, p, begins, room):
     begins: the kick begins at t, else it ends there. p.inertia is that of `accelerate` at x. Returns the work [J] that
     prescribed nodes did through the damping of links.
     """
+    # The first stage begins with the drag at the velocities before it: a second round makes it of second order. The
+    # second stage begins with the drag at velocities extrapolated from the first.
     rounds, begin = 2 if open_kick(x, v, t, p, room) else 1, 0.0 if begins else -s
     for j in range(v.shape[0]):
         room.start[j] = room.turning[j] = room.w[j] = v[j]
@@ -386,9 +399,11 @@ def kick_lines(x, v, a, t, s, p, begins, room):
     for j in range(v.shape[0]):
         gained = v[j] - room.start[j]
         room.w[j] = room.start[j] + STRETCH * gained
-        room.turning[j] += gained / GAMMA if begins else 0.0
+        v[j] = room.start[j] + gained / GAMMA
+        room.turning[j] = v[j] if begins else room.start[j]
+    set_drag(v, p, room)
     open_stage(x, t, begin + s, p, room)
-    take_stage(v, a, GAMMA * s, p, room, rounds)
+    take_stage(v, a, GAMMA * s, p, room, 1)
     return work + holders_work(v, GAMMA * s, p, room)
 
 

@@ -34,8 +34,6 @@ HELD = (
     1e-6  # of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it
 )
 
-LIGHT = 1e-3  # of the mass of the ends of its lines: that of a free body without its own
-SAME_PLACE = 1e-6  # [m]
 
 LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the file: beyond, it is said, and refused
 

@@ -182,6 +182,13 @@ def as_array(name: str, value: Any, allowed: str) -> np.ndarray:
     return array.astype(np.float64)
 
 
+def read_only(array: np.ndarray) -> np.ndarray:
+    """A contiguous copy of an array that nobody can change, for records that are immutable."""
+    copy = np.array(array, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
 def check_positions(name: str, value: Any, length: int = 2) -> np.ndarray:
     """`value` as contiguous float64 of shape (n, length).
 

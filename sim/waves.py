@@ -38,6 +38,7 @@ from sim.validation import (
     check_positions,
     check_vector,
     is_whole_number,
+    read_only,
 )
 from sim.water import Water
 
@@ -62,7 +63,7 @@ class Kinematics(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Waves:
-    """n waves a cos(k.x - omega t + phase) on one water. Arrays (n,) float64.
+    """n waves a cos(k.x - omega t + phase) on one water. Arrays (n,) float64, read-only copies of those given.
 
     Raises ValueError for arrays that are not finite or not of one shape (n,), and for what is no `Water`.
     """
@@ -84,14 +85,18 @@ class Waves:
                 given = self.water.omega(self.k)
             allowed = "finite numbers of shape (n,), as many as of kx"
             values = as_array(name, given, allowed)
-            object.__setattr__(self, name, values)
+            object.__setattr__(self, name, read_only(values))
             if values.ndim != 1 or values.shape != self.kx.shape or not np.isfinite(values).all():
                 raise argument_error(name, values if values.ndim == 1 else values.shape, allowed)
+
+    def __reduce__(self) -> tuple[type["Waves"], tuple[Any, ...]]:
+        """Pickle the fields alone, so that their copies are read-only too."""
+        return Waves, tuple(getattr(self, field.name) for field in dataclasses.fields(self))
 
     @functools.cached_property
     def k(self) -> np.ndarray:
         """Wavenumber (n,) [rad/m]."""
-        return np.hypot(self.kx, self.ky)
+        return read_only(np.hypot(self.kx, self.ky))
 
     @property
     def significant_height(self) -> float:

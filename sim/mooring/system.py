@@ -44,6 +44,7 @@ from sim.validation import (
     check_positive,
     check_vector,
     is_whole_number,
+    read_only,
 )
 from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
@@ -100,6 +101,7 @@ class System(MooringParts):
         check_ids("bodies", self.bodies)
         for body in self.bodies:
             check_body(body, 0 if self.waves is None else len(self.waves.kx))
+        object.__setattr__(self, "bodies", tuple(map(with_read_only_arrays, self.bodies)))
         check_ids("points", self.points)
         bodies = dict.fromkeys(body.id for body in self.bodies).keys()
         for point in self.points:
@@ -364,6 +366,12 @@ def part_tables(system: System) -> tuple[NDArray[np.int64], NDArray[np.void]]:
 def volume_height(volume: float, area: float) -> float:
     """Height [m] of a volume over its area in the plane of water that cuts it in the middle; a point's is next to 0."""
     return max(volume / max(area, 1e-300), 1e-9)
+
+
+def with_read_only_arrays(body: MooredBody) -> MooredBody:
+    """The body with copies of its arrays that nobody can change."""
+    arrays = {name: getattr(body, name) for name in ("mass", "stiffness", "damping", "excitation")}
+    return body._replace(**{name: read_only(array) for name, array in arrays.items() if array is not None})
 
 
 def check_ids(name: str, items: Sequence[Any]) -> None:

@@ -5,12 +5,16 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+CANCELLED = 1e-6  # of the lengths of vectors, below which their sum is round-off
 ROUNDING = 1e-6  # [rad] within which two angles are one direction: a turn in single precision is off by 2e-7
 
 
-def direction_of(east: float, north: float) -> float:
-    """Direction [rad] of a vector, from +x towards +y, in (-pi, pi]; nan of none. That of west is pi, never -pi."""
-    if not math.hypot(east, north) > 0.0:
+def direction_of(east: float, north: float, total: float) -> float:
+    """Direction [rad] of a sum of vectors, from +x towards +y, in (-pi, pi]. That of west is pi, never -pi.
+
+    total: the sum of their lengths. nan where they cancel out to less than 1e-6 of it.
+    """
+    if not math.hypot(east, north) > CANCELLED * total:
         return math.nan
     angle = math.atan2(north, east)
     return math.pi if angle < ROUNDING - math.pi else angle

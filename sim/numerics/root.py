@@ -33,7 +33,8 @@ def narrowed(
             is_below = np.less(value, 0.0)
             low, high = np.where(is_below, x, low), np.where(is_below, high, x)
             finest = np.maximum(resolution, 4.0 * EPSILON * np.maximum(np.abs(low), np.abs(high)))
-            if (high - low <= finest).all():
+            middle = low + 0.5 * (high - low)
+            if ((high - low <= finest) | (middle <= low) | (middle >= high)).all():  # or no number lies between
                 return low[()], high[()]
             # Where a step to just beyond the root was too short, as round-off hides the root, the next is longer.
             is_led = (stride == least) & (is_below == np.less(before_value, 0.0))

@@ -30,6 +30,7 @@ from sim.validation import (
     check_positive,
     check_vector,
     is_whole_number,
+    read_only,
 )
 
 Vector = tuple[float, float, float]
@@ -101,9 +102,9 @@ class PinPath(NamedTuple):
     coefficients: tuple[Vector, Vector, Vector, Vector]
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Net(PointSystem[Run]):
-    """The immutable description of a spring-mass system; its state is `State`."""
+    """The immutable description of a spring-mass system; its state is `State`. Its arrays are read-only copies."""
 
     x0: NDArray[np.float64]  # (3, rows, cols) [m], initial positions
     families: tuple[Family, ...]
@@ -128,6 +129,10 @@ class Net(PointSystem[Run]):
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
     threads: int = 1  # for the forces of a cloth
 
+    def __reduce__(self) -> tuple[type["Net"], tuple[Any, ...]]:
+        """Pickle the fields alone, so that their copies are read-only too."""
+        return Net, tuple(getattr(self, field.name) for field in dataclasses.fields(self))
+
     def __deepcopy__(self, memo: object) -> "Net":
         """The net itself, as it is immutable."""
         return self
@@ -144,7 +149,7 @@ class Net(PointSystem[Run]):
                 check_positive("families rest", family.rest, "m")
         check_positive("mass", self.mass, "kg")
         if self.mass_ratios is not None:
-            check_mass_ratios(self.mass_ratios, (rows, cols))
+            object.__setattr__(self, "mass_ratios", check_mass_ratios(self.mass_ratios, (rows, cols)))
         check_positive("side_ratio", self.side_ratio, "")
         if self.side_ratio != 1.0 and min(rows, cols) < 2:
             raise argument_error("side_ratio", self.side_ratio, "1, as a net one particle wide has no sides")
@@ -390,21 +395,22 @@ def start_positions(x0: Any) -> NDArray[np.float64]:
         raise argument_error("x0", getattr(x0, "dtype", type(x0)), allowed)
     if x0.ndim != 3 or x0.shape[0] != 3 or x0.size == 0:
         raise argument_error("x0", x0.shape, allowed)
-    x0 = np.ascontiguousarray(x0, dtype=np.float64)
+    x0 = read_only(x0.astype(np.float64))
     largest = float(np.abs(x0).max())
     if largest >= FARTHEST:
         raise argument_error("x0", largest, allowed)
     return x0
 
 
-def check_mass_ratios(ratios: Any, shape: tuple[int, int]) -> None:
-    """Raises ValueError unless it is an array of numbers above 0, one for each point."""
+def check_mass_ratios(ratios: Any, shape: tuple[int, int]) -> NDArray[np.float64]:
+    """`ratios` as a read-only array. Raises ValueError unless they are numbers above 0, one for each point."""
     array = as_array("mass_ratios", ratios, f"numbers of shape {shape}")
     if array.shape != shape:
         raise argument_error("mass_ratios", array.shape, f"numbers of shape {shape}")
     bad = ~((array > 0.0) & (array < math.inf))
     if bad.any():
         raise argument_error("mass_ratios", float(array[bad][0]), "finite numbers above 0")
+    return read_only(array)
 
 
 def check_place(name: str, value: object) -> Vector:

@@ -21,7 +21,7 @@ from sim.validation import argument_error, check_kind, check_positive, is_whole_
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(eq=False)
 class State:
     """Positions and velocities, (3, rows, cols) of a net and (3, n) of lines, the time, and the running ledger.
 
@@ -72,6 +72,10 @@ def check_state(system: PointSystem, state: State, name: str = "state") -> None:
             raise argument_error(field, array.shape, f"the shape of a state of the system, {system.state_shape}")
         if array.dtype != np.float64 or not array.flags.c_contiguous:
             raise argument_error(field, f"{array.dtype}, {array.strides}", "a contiguous array of float64")
+        if not array.flags.writeable:
+            raise argument_error(field, "a read-only array", "one that can be changed, as `State.copy` makes")
+    if np.may_share_memory(state.x, state.v):
+        raise argument_error(f"{name}.v", f"the memory of {name}.x", "an array of its own")
 
 
 Driven = Mapping[str, NDArray[np.float64]] | None

@@ -85,7 +85,7 @@ class WaveExcitation:
         runs = waves.omega > CREEPING * np.sqrt(gravity * k)
         inverse = np.divide(1.0, waves.omega, out=np.zeros_like(k), where=runs)
         set_responses(
-            fleet.rotation, self.kind, self.is_round, self.heading, waves.kx, waves.ky, inverse, gravity, self.tables,
+            fleet.rotation, self.kind, self.is_round, self.heading, self.kx, self.ky, inverse, gravity, self.tables,
             self.is_long, self.longs, self.averaged, self.planes, self.responses,
         )  # fmt: skip
         raise_if_stopped()

@@ -57,6 +57,8 @@ MIRROR_Y = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
 
 TABLED = ("box", "cylinder", "sphere")  # shapes that have tables
+MAX_UNLIKE = 1.5  # factor between the sizes of such a hull and of its box
+LEAST_PART = 1e-3  # of the area of a waterplane, below which a part of it does not count
 ADVICE = "`with_dataset` takes a table by Capytaine, and `springtide hydrodynamics` makes one for a mesh file"
 
 
@@ -267,6 +269,75 @@ def check_bed(name: str, hull: Hull, draft: float, depth: float) -> None:
         raise argument_error(name, given, "water that is deeper than its draft")
 
 
+def is_boxed(hull: Hull, draft: float) -> bool:
+    """True for a hull that has the coefficients of a box in place of its own."""
+    return hull.shape.table is None and hull.shape.linear not in TABLED and not is_sunken(hull, draft)
+
+
+def box_of(hull: Hull, draft: float) -> tuple[float, float, float]:
+    """Length, width and draft [m] of the box whose coefficients a hull has at a draft [m]."""
+    place = place_in_table(hull, draft)
+    x = 2.0 * place.length * math.sqrt(place.aspect) ** (-1 if place.is_turned else 1)
+    return x, 4.0 * place.length**2 / x, place.depth * place.length
+
+
+def check_box(name: str, hull: Hull, draft: float) -> None:
+    """Raises ValueError for a hull that no box stands for: in several parts at the waterline, or far from its box.
+
+    Length, width and draft of the box may differ from those of the hull by a factor of 1.5.
+    """
+    if not is_boxed(hull, draft):
+        return
+    parts, size = waterplane_of(hull, draft)
+    box, own = box_of(hull, draft), (*size, draft)
+    found = [f"{parts} parts at the waterline"] if parts > 1 else []
+    for quantity, a, b in zip(("length", "width", "draft"), box, own, strict=True):
+        if not MAX_UNLIKE**-1 * b <= a <= MAX_UNLIKE * b:
+            found.append(f"a {quantity} of {b:.3g} m, and the box with its volume and waterplane {a:.3g} m")
+    if found:
+        allowed = "a hull with coefficients of its own: `springtide hydrodynamics FILE` computes them"
+        raise argument_error(
+            name, f"{hull.shape.name} with {'; '.join(found)}", f"{allowed}, `with_dataset` reads them"
+        )
+
+
+def waterplane_of(hull: ClosedMesh, draft: float) -> tuple[int, tuple[float, float]]:
+    """Number of parts of the waterplane of an upright hull at a draft [m], and its extents [m] along x and y.
+
+    Faces that the surface cuts are the sides of loops; those around water inside the hull run the other way.
+    """
+    level = float(hull.extents[2, 0]) + draft
+    height = hull.vertices[:, 2] - level
+    wet = height < 0.0
+    cut = hull.faces[wet[hull.faces].any(axis=1) & ~wet[hull.faces].all(axis=1)]
+    if not len(cut):
+        return 0, (0.0, 0.0)
+    # The two edges of each face, from its wet end to its dry one, in the order in which the outside lies to the right.
+    following = np.roll(cut, -1, axis=1)
+    leaves, enters = wet[cut] & ~wet[following], ~wet[cut] & wet[following]
+    ends = [np.stack((cut[leaves], following[leaves])), np.stack((following[enters], cut[enters]))]
+    edges, number = np.unique(np.concatenate(ends, axis=1), axis=1, return_inverse=True)
+    low, high = height[edges[0]], height[edges[1]]
+    share = (low / (low - high))[:, None]
+    places = (1.0 - share) * hull.vertices[edges[0], :2] + share * hull.vertices[edges[1], :2]
+    first, second = number.reshape(2, -1)
+    loop = np.arange(len(places))
+    while True:
+        least = np.minimum(loop[first], loop[second])
+        after = loop.copy()
+        np.minimum.at(after, first, least)
+        np.minimum.at(after, second, least)
+        after = after[after]
+        if np.array_equal(after, loop):
+            break
+        loop = after
+    (ax, ay), (bx, by) = places[first].T, places[second].T
+    areas = np.bincount(loop[first], 0.5 * (ax * by - ay * bx), len(places))
+    areas *= np.sign(areas.sum())
+    x, y = np.ptp(places, axis=0).tolist()
+    return int((areas > LEAST_PART * areas.sum()).sum()), (x, y)
+
+
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m].
 
@@ -282,11 +353,9 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
 def approximation_of(hull: Hull, draft: float) -> str:
     """The words for coefficients that are not those of the hull at its draft [m]; "" for its own."""
     causes, beyond = [], outside_table(hull, draft)
-    if hull.shape.table is None and hull.shape.linear not in TABLED and not is_sunken(hull, draft):
-        place = place_in_table(hull, draft)
-        across = 2.0 * place.length / math.sqrt(place.aspect)
-        x, y = (across, across * place.aspect) if place.is_turned else (across * place.aspect, across)
-        box = f"a box {x:.3g} m long, {y:.3g} m wide, of draft {place.depth * place.length:.3g} m"
+    if is_boxed(hull, draft):
+        x, y, depth = box_of(hull, draft)
+        box = f"a box {x:.3g} m long, {y:.3g} m wide, of draft {depth:.3g} m"
         causes.append(f"added mass, damping and wave forces are those of {box}, of its volume and waterplane")
     if beyond:
         causes.append(f"{beyond} is outside; added mass, damping and wave forces are taken from the edge")

@@ -3,7 +3,7 @@
 import math
 
 from sim.floating.hulls.hull import Hull
-from sim.floating.linear.hydrodynamics import linear_hull, natural_frequency
+from sim.floating.linear.hydrodynamics import check_box, linear_hull, natural_frequency
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.validation import argument_error, check_number, is_whole_number
 from sim.water import EARTH_GRAVITY
@@ -16,7 +16,8 @@ def heave_period(
 
     A33 is that of linear theory at this period. C33 = g sum (rho_i - rho_{i-1}) A_i over the waterplanes at surface and
     interfaces, which are taken to stay level (Newman 1977, section 6.16). added scales the added mass. inf where no
-    force restores: the hull sinks, or is wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
+    force restores: the hull sinks, or is wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`, and
+    for a hull from a mesh that no box stands for.
 
     >>> from sim.floating import Hull
     >>> round(heave_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]
@@ -24,7 +25,10 @@ def heave_period(
     """
     check_number("added", added, "", 0.0)
     layers = check_layers(layers)
-    return heave_period_at(hull, density, layers, equilibrium_draft(hull, density, layers, gravity), gravity, added)
+    draft = equilibrium_draft(hull, density, layers, gravity)
+    if not math.isinf(draft):
+        check_box("hull", hull, draft)
+    return heave_period_at(hull, density, layers, draft, gravity, added)
 
 
 def heave_period_at(
@@ -65,6 +69,7 @@ def roll_period(
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
         return math.inf
+    check_box("hull", hull, draft)
     stiffness = 0.0
     for change, top in density_steps(layers):
         cut = upright(hull, draft - top)

@@ -20,6 +20,7 @@ from sim.floating.linear.hydrodynamics import (
     LinearHull,
     PlaneForce,
     check_bed,
+    check_box,
     check_water_depth,
     lagrange,
     linear_hull,
@@ -175,6 +176,7 @@ def upright_body(body: Body, layers: Layers, gravity: float, depth: float | None
     if rest.tilt > MAX_TRIM:
         raise argument_error("center_of_gravity", body.center_of_gravity, "one over the centre of buoyancy")
     planes = [(change, plane_force(hull, draft - top)) for change, top in density_steps(layers) if draft > top]
+    check_box("body", hull, draft)
     linear, C = linear_hull(hull, draft), np.zeros((6, 6))
     depth = linear.depth if depth is None else depth
     check_bed("depth", hull, draft, depth)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
-from sim.floating.linear.hydrodynamics import check_bed, check_water_depth
+from sim.floating.linear.hydrodynamics import check_bed, check_box, check_water_depth
 from sim.floating.motion.body import Body, make_fleet
 from sim.floating.motion.fluid_state import make_water
 from sim.floating.motion.motion import STANDARD, MotionCoefficients, step
@@ -75,9 +75,10 @@ class FloatState:
         self.fleet = make_fleet(bodies, self.layers)
         for i, body in enumerate(bodies):
             check_water_depth(f"bodies[{i}]", body.hull, sea.water.depth)
-            if not math.isinf(sea.water.depth):
-                draft = equilibrium_draft(*body.loaded(), self.layers)
-                check_bed(f"bodies[{i}]", body.hull, draft, sea.water.depth)
+            hull, density = body.loaded()
+            draft = min(equilibrium_draft(hull, density, self.layers), float(hull.size[2]))
+            check_bed(f"bodies[{i}]", hull, draft, sea.water.depth)
+            check_box(f"bodies[{i}]", hull, draft)
         self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
         self.excitation = WaveExcitation(bodies, self.widths, self.layers) if sea.is_sum_of_waves else None
         self.t = sea.time if begin is None else check_number("begin", begin, "s")

@@ -22,6 +22,6 @@ class Footprints:
             if len(self.kept) > MAX_KEPT:
                 self.kept.clear()
             unique, which = np.unique(size, return_inverse=True)
-            rows = np.array([widened(self.k, float(s)) for s in unique]).reshape(-1, len(self.k))
+            rows = np.array([widened(self.k, float(s)) for s in unique]).reshape(len(unique), len(self.k))
             self.kept[key] = rows[which]
         return self.kept[key]

@@ -232,7 +232,8 @@ class RadialSea(AnySea):
         z, (hx, hy), (a, b, c) = found[:, 0], found[:, 1:3].T, found[:, 3:6].T
         inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
-        mean, interface_mean = self.choppiness * (gathered @ np.square(weight).T)
+        # not by @, whose last digit depends on where the arrays lie
+        mean, interface_mean = self.choppiness * (gathered[:, None] * np.square(weight)).sum(axis=2)
         return SurfaceAt(z + mean, slope, found[:, 6:9].copy(), found[:, 9].copy(), found[:, 10] + interface_mean,
                          found[:, 11:13].copy(), found[:, 13].copy(), label, residual)  # fmt: skip
 

@@ -56,7 +56,10 @@ def theory(spectrum: Spectrum[Any], conditions: Conditions, k_max: float = 1e4, 
     peak = omega[np.argmax(along / (k * conditions.group_speed(k)))]
     east, north = (cells * np.cos(theta)).sum(), (cells * np.sin(theta)).sum()
     return Statistics(
-        4.0 * math.sqrt(along.sum()), 2.0 * math.pi / peak, float((along * k**2).sum()), direction_of(east, north)
+        4.0 * math.sqrt(along.sum()),
+        2.0 * math.pi / peak,
+        float((along * k**2).sum()),
+        direction_of(east, north, along.sum()),
     )
 
 
@@ -147,7 +150,7 @@ def measured(
         turned = twice * (before.imag * h.real - before.real * h.imag)
         turned = np.divide(turned, scale, out=np.zeros_like(turned), where=some)
         if resolved_in_time(peak_period, interval):
-            direction = direction_of(float((turned * kx).sum()), float((turned * ky).sum()))
+            direction = direction_of(*(float((turned * one).sum()) for one in (kx, ky, k * np.sign(turned))))
     return Statistics(
         4.0 * math.sqrt(energy.sum()),
         peak_period,
@@ -200,7 +203,7 @@ def _of_energy(sea: "Sea", energy: np.ndarray) -> Statistics:
         4.0 * math.sqrt(energy.sum()),
         _peak_period(sea.frequencies, energy),
         float((energy * k**2).sum()),
-        direction_of((energy * kx * inverse).sum(), (energy * ky * inverse).sum()),
+        direction_of((energy * kx * inverse).sum(), (energy * ky * inverse).sum(), energy.sum()),
     )
 
 

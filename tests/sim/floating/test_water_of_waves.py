@@ -6,8 +6,9 @@ import warnings
 import numpy as np
 import pytest
 
-from sim.floating import Body, Hull, float_in, heave_period, linear_forces, make_fleet, response_amplitude
+from sim.floating import Body, Hull, float_in, heave_period, linear_forces, make_fleet, response_amplitude, roll_period
 from sim.floating.linear import response
+from sim.floating.linear.hydrodynamics import waterplane_of
 from sim.mooring import moored
 from sim.ocean import Sea
 from sim.validation import ApproximationWarning
@@ -109,6 +110,48 @@ def test_a_hull_below_the_bed_is_refused() -> None:
     assert_refused("bodies[0]", lambda: float_in(sea, [body], 0.1, frames=2), words)
     assert_refused("depth", lambda: moored(1, body, 1.0, water=Water(depth=1.2)), words)
     assert_refused("depth", lambda: response_amplitude(body, 1.0, depth=1.2), words)
+
+
+def catamaran(gap: float = 12.0, bridge: bool = False) -> Hull:
+    """Two hulls of 20 m by 2 m by 6 m, under a deck that joins them if there is a bridge."""
+    trimesh = pytest.importorskip("trimesh")
+    boxes = []
+    for side in (-0.5, 0.5):
+        boxes.append(trimesh.creation.box((20.0, 2.0, 6.0)))
+        boxes[-1].apply_translation((0.0, side * gap, 0.0))
+    if bridge:
+        boxes = [trimesh.creation.box((20.0, gap, 6.0))]
+    mesh = trimesh.util.concatenate(boxes)
+    return Hull.from_arrays(mesh.vertices, mesh.faces)
+
+
+@pytest.mark.parametrize("use", [
+    lambda hull: heave_period(hull, 683.0),
+    lambda hull: roll_period(hull, 683.0),
+    lambda hull: response_amplitude(Body(hull, 683.0), 1.0),
+    lambda hull: moored(1, Body(hull, 683.0), 1.0),
+    lambda hull: float_in(Sea(32, 60.0), [Body(hull, 683.0)], 0.1, frames=2),
+])  # fmt: skip
+def test_a_catamaran_has_no_coefficients_of_a_box(use) -> None:
+    with pytest.raises(ValueError, match=r"2 parts at the waterline.*springtide hydrodynamics"):
+        use(catamaran())
+
+
+def test_the_parts_and_extents_of_a_waterplane_are_those_of_the_mesh() -> None:
+    assert waterplane_of(catamaran(), 4.0) == (2, pytest.approx((20.0, 14.0)))
+    assert waterplane_of(catamaran(bridge=True), 2.5) == (1, pytest.approx((20.0, 12.0)))
+    trimesh = pytest.importorskip("trimesh")
+    ring = trimesh.creation.annulus(r_min=3.0, r_max=5.0, height=2.0)
+    assert waterplane_of(Hull.from_arrays(ring.vertices, ring.faces), 0.9) == (1, pytest.approx((10.0, 10.0), rel=1e-2))
+    assert waterplane_of(prism(), 1.0) == (1, pytest.approx((11.0, 3.5)))
+
+
+def test_a_hull_far_from_its_box_is_refused_with_both_sizes() -> None:
+    cone = np.array([[3.0, 0.0, 2.0], [0.0, 3.0, 2.0], [-3.0, 0.0, 2.0], [0.0, -3.0, 2.0], [0.0, 0.0, -2.0]])
+    hull = Hull.from_arrays(cone, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]]))
+    with pytest.raises(ValueError, match=r"a draft of .* m, and the box with its volume and waterplane .* m"):
+        heave_period(hull, 700.0)
+    assert np.isfinite(heave_period(prism(), 500.0))
 
 
 def prism() -> Hull:

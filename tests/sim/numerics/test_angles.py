@@ -12,10 +12,12 @@ TURN = 2.0 * math.pi
 
 def test_a_direction_of_west_has_one_sign():
     for north in (0.0, -0.0, 1e-17, -1e-17, 3e-13, -3e-13):
-        assert direction_of(-1.0, north) == pytest.approx(math.pi)
-    assert direction_of(-1.0, -1e-3) == pytest.approx(-math.pi + 1e-3)
-    assert direction_of(0.0, -2.0) == pytest.approx(-0.5 * math.pi)
-    assert math.isnan(direction_of(0.0, -0.0))
+        assert direction_of(-1.0, north, 1.0) == pytest.approx(math.pi)
+    assert direction_of(-1.0, -1e-3, 1.0) == pytest.approx(-math.pi + 1e-3)
+    assert direction_of(0.0, -2.0, 3.0) == pytest.approx(-0.5 * math.pi)
+    assert math.isnan(direction_of(0.0, -0.0, 0.0))
+    assert math.isnan(direction_of(3e-7, -4e-7, 1.0))
+    assert direction_of(3e-6, 4e-6, 1.0) == pytest.approx(math.atan2(4.0, 3.0))
 
 
 def test_whole_turns_are_0_also_if_they_were_rounded():

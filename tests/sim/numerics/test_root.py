@@ -104,3 +104,20 @@ def test_round_off_about_the_root_does_not_make_the_search_creep():
         assert rough(a)[0] < 0.0 <= rough(b)[0]
         assert a == pytest.approx(1.0, abs=1e-4)
         assert len(places) <= 150
+
+
+@pytest.mark.parametrize(("low", "high"), [(-1.0, 1.0), (-3.0, 1.0), (0.0, 1.0), (-1.0, 0.0)])
+@pytest.mark.parametrize("root", [0.0, 1e-320, -1e-320])
+def test_a_search_about_0_ends(low: float, high: float, root: float) -> None:
+    evaluations = 0
+
+    def value(x: float) -> float:
+        nonlocal evaluations
+        evaluations += 1
+        assert evaluations < 3000
+        return x - root
+
+    a, b = narrowed(value, low, high)
+    assert a <= max(root, low)
+    assert b >= min(root, high)
+    assert b - a <= 1e-300

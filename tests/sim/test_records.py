@@ -1,0 +1,147 @@
+"""Public records are what their names promise: copies that nobody can change, comparable, hashable and picklable."""
+
+import copy
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sim.floating import Body, FloatState, Hull
+from sim.mooring import Line, LineType, MooredBody, Point, System
+from sim.ocean import SPECTRA, NonlinearSea, RadialSea, Sea, draw_waves
+from sim.springs import State, advance, cloth, rope
+from sim.springs.net import Net
+from sim.water import Water
+from sim.waves import Waves
+from tests.refusals import assert_refused
+
+CHAIN = LineType("chain", 0.1, 200.0, 1e8)
+POINTS = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, -1.0)))
+JONSWAP = SPECTRA["jonswap"]
+
+
+def system(**more: Any) -> System:
+    return System((Line(1, CHAIN, 1, 2, 70.0, 5),), POINTS, depth=30.0, **more)
+
+
+def waves() -> Waves:
+    return Waves([0.1, 0.2], [0.0, 0.1], [1.0, 0.5], [0.0, 1.0])
+
+
+RECORDS: dict[str, Callable[[], Any]] = {
+    "net": lambda: rope(5), "cloth": lambda: cloth(4, 4), "masses": lambda: rope(3, mass=[1.0, 2.0, 3.0]),
+    "system": system, "waves": waves, "water": Water, "hull": lambda: Hull.box(1.0, 1.0, 1.0),
+    "body": lambda: Body(Hull.box(1.0, 1.0, 1.0)), "conditions": lambda: JONSWAP.conditions(wind_speed=9.0),
+    "state": lambda: State.at_rest(rope(5)), "line": lambda: system().lines[0],
+    "sea": lambda: Sea(32, 100.0), "nonlinear sea": lambda: NonlinearSea(32, 100.0, start=Sea(32, 100.0)),
+    "radial sea": lambda: RadialSea(draw_waves(JONSWAP, JONSWAP.conditions(wind_speed=9.0), 8)),
+    "float state": lambda: FloatState(Sea(32, 100.0), [Body(Hull.box(1.0, 1.0, 0.5)).afloat()]),
+}  # fmt: skip
+MUTABLE = {"state"}
+
+
+def arrays_of(record: Any) -> list[np.ndarray]:
+    return (
+        [value for value in vars(record).values() if isinstance(value, np.ndarray)]
+        if hasattr(record, "__dict__")
+        else []
+    )
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_record_can_be_compared_hashed_shown_copied_and_saved(name: str) -> None:
+    one, other = RECORDS[name](), RECORDS[name]()
+    assert one == one
+    assert isinstance(one == other, bool)
+    assert isinstance(hash(one), int)
+    assert repr(one)
+    for again in (pickle.loads(pickle.dumps(one)), copy.deepcopy(one), copy.copy(one)):
+        assert type(again) is type(one)
+        assert len(arrays_of(again)) >= 0
+        for before, after in zip(arrays_of(one), arrays_of(again), strict=False):
+            np.testing.assert_array_equal(before, after)
+
+
+def test_a_saved_sea_is_the_same_sea() -> None:
+    places = [[1.0, 2.0], [30.0, -7.0]]
+    for name in ("sea", "nonlinear sea", "radial sea"):
+        sea = RECORDS[name]()
+        sea.at(places, 0.3)
+        again = pickle.loads(pickle.dumps(sea))
+        assert again.time == sea.time == 0.3
+        for t in (0.3, 2.0):
+            for one, other in zip(sea.at(places, t), again.at(places, t), strict=True):
+                np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("saved", [False, True])
+def test_immutable_records_hold_read_only_copies(saved: bool) -> None:
+    x0, ratios, kx, mass = rope(5).x0.copy(), np.ones((1, 5)), np.array([0.1]), np.eye(6) * 1e5
+    given = rope(5)
+    net = Net(x0, given.families, given.mass, given.drag, given.gravity, given.pinned, mass_ratios=ratios)
+    wave = Waves(kx, [0.0], [1.0], [0.0])
+    moored = system(bodies=(MooredBody(1, (0.0, 0.0, 0.0), mass, np.eye(6)),)).bodies[0]
+    if saved:
+        net, wave = pickle.loads(pickle.dumps(net)), pickle.loads(pickle.dumps(wave))
+    kept = [net.x0, net.mass_ratios, wave.kx, wave.ky, wave.amplitude, wave.phase, wave.omega, wave.k]
+    if not saved:
+        kept += [moored.mass, moored.stiffness]
+    before = [array.copy() for array in kept]
+    for array in (x0, ratios, kx, mass):
+        array += 9.0
+    for array, value in zip(kept, before, strict=True):
+        np.testing.assert_array_equal(array, value)
+        with pytest.raises(ValueError, match="read-only"):
+            array += 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        copy.deepcopy(net).x0[...] += 1.0
+
+
+KINDS = {
+    "float32": lambda a: a.astype(np.float32), "big-endian": lambda a: a.astype(">f8"), "list": lambda a: a.tolist(),
+    "strided": lambda a: np.repeat(a, 2, axis=0)[::2], "Fortran": np.asfortranarray,
+    "read-only": lambda a: np.lib.stride_tricks.as_strided(a, writeable=False),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_arrays_of_any_kind_are_taken(kind: str) -> None:
+    change = KINDS[kind]
+    places = np.array([[1.0, 2.0], [3.5, -4.0], [20.0, 8.0]])
+    for name in ("sea", "nonlinear sea", "radial sea"):
+        sea = RECORDS[name]()
+        np.testing.assert_array_equal(sea.at(change(places), 1.0).velocity, sea.at(places, 1.0).velocity)
+        depths = np.column_stack([places, [-1.0, -2.0, -0.5]])
+        np.testing.assert_array_equal(
+            sea.kinematics(change(depths), 1.0).velocity, sea.kinematics(depths, 1.0).velocity
+        )
+    numbers = np.array([0.125, 0.25, 0.5])
+    taken = Waves(change(numbers), change(numbers), change(numbers), change(numbers))
+    np.testing.assert_array_equal(taken.amplitude, numbers)
+    assert taken.amplitude.dtype == np.float64
+
+
+def test_no_points_and_no_waves_are_taken() -> None:
+    nothing = np.zeros((0, 2))
+    for sea in (
+        *(RECORDS[name]() for name in ("sea", "nonlinear sea", "radial sea")),
+        RadialSea(Waves([], [], [], [])),
+    ):
+        assert sea.at(nothing, 1.0).velocity.shape == (0, 3)
+        assert sea.height_at(nothing, 1.0)[0].shape == (0,)
+        assert sea.kinematics(np.zeros((0, 3)), 1.0).velocity.shape == (0, 3)
+    at = RadialSea(Waves([], [], [], [])).at([[0.0, 1.0], [2.0, 3.0]], 1.0, size=[1.0, 2.0])
+    assert not at.velocity.any()
+    assert at.height.tolist() == [0.0, 0.0]
+
+
+def test_a_state_that_cannot_be_advanced_is_refused_by_name() -> None:
+    net = rope(5)
+    state = State.at_rest(net)
+    state.x.flags.writeable = False
+    assert_refused("state.x", lambda: advance(net, state, "rk4", 1e-3, 1), "read-only")
+    state = State.at_rest(net)
+    state.v = state.x
+    assert_refused("state.v", lambda: advance(net, state, "rk4", 1e-3, 1), "an array of its own")

@@ -31,6 +31,7 @@ from sim.floating.linear.hydrodynamics import (
 )
 from sim.floating.linear.linear_table import LinearTable, not_finite
 from sim.inputs.bounds import WARNING
+from sim.inputs.kinds import check_file
 from sim.numerics.angles import once_around, within_half_turn
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
@@ -94,6 +95,7 @@ def with_dataset(
 def read_dataset(path: str | Path) -> "Dataset":
     """The dataset in a file. Raises ValueError for any other file, ModuleNotFoundError without xarray."""
     check_kind("path", path, str | os.PathLike, "the name of a file")
+    check_file("path", Path(path), ("dataset",), "a dataset written by capytaine.export_dataset")
     import xarray  # half a second, and not needed by most
 
     try:

@@ -31,7 +31,6 @@ import numpy as np
 from app.messages import BaseParams, Vector
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind, SceneKind
-from sim.inputs.kinds import check_file
 from sim.parameters import (
     Value,
     changed_names,
@@ -461,6 +460,8 @@ def read_setup_text(what: str, path: Path) -> str:
 
     what: name of the file in errors. Raises ValueError if it cannot be read or holds no set-up.
     """
+    from sim.inputs.kinds import check_file  # a start without a file does without it
+
     check_file(what, path, ("set-up", "json"), FORMS)
     try:
         with path.open("rb") as file:

@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sim.floating.hulls.mesh_repair import mirrored, triangles_of, welded
-from sim.inputs.kinds import check_file
 from sim.validation import argument_error, unreadable
 
 Y_UP = (".glb", ".gltf")  # +y up and metres (glTF 2.0, section 3.4)
@@ -52,6 +51,8 @@ def read_mesh(path: Path, unit: str = "") -> Mesh:
     ending = path.suffix.lower()
     if not path.is_file():
         raise unreadable("path", path, FileNotFoundError() if not path.exists() else IsADirectoryError(21, "a folder"))
+    from sim.inputs.kinds import check_file  # reading meshes is rare
+
     check_file("path", path, ("mesh",), FORMATS)
     if ending in PANELS:
         mesh, own = panels(path, PANELS[ending])

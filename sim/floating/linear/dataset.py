@@ -31,7 +31,6 @@ from sim.floating.linear.hydrodynamics import (
 )
 from sim.floating.linear.linear_table import LinearTable, not_finite
 from sim.inputs.bounds import WARNING
-from sim.inputs.kinds import check_file
 from sim.numerics.angles import once_around, within_half_turn
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
@@ -95,6 +94,8 @@ def with_dataset(
 def read_dataset(path: str | Path) -> "Dataset":
     """The dataset in a file. Raises ValueError for any other file, ModuleNotFoundError without xarray."""
     check_kind("path", path, str | os.PathLike, "the name of a file")
+    from sim.inputs.kinds import check_file  # reading datasets is rare
+
     check_file("path", Path(path), ("dataset",), "a dataset written by capytaine.export_dataset")
     import xarray  # half a second, and not needed by most
 

@@ -8,7 +8,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from sim.inputs.bounds import WARNING
-from sim.inputs.kinds import check_file
 from sim.mooring.moordyn.bodies import drag_of, free_body, is_point, least_inertia, merge
 from sim.mooring.moordyn.meant import doubts
 from sim.mooring.moordyn.options import read_options
@@ -51,6 +50,8 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     """
     path, wrong = Path(path), Refusals()
     if content is None:
+        from sim.inputs.kinds import check_file  # a start without a file does without it
+
         check_file("file", path, ("deck",), "a deck of MoorDyn")
     found = split_sections(read_text(path) if content is None else decoded(content), wrong)
     needed = (TYPES, LINES) if RODS in found and found[RODS].rows else (TYPES, POINTS, LINES)

@@ -1,4 +1,4 @@
-"""What a file is, by its content: one sentence, before any reader tries it.
+"""Kinds of files, told by their content: one sentence, before any reader tries a file.
 
 A reader that is given a file of another kind refuses it with that sentence, and with what takes such a file.
 """
@@ -88,7 +88,7 @@ TAKEN_BY = {  # kind -> what takes such a file
 
 
 class Seen(NamedTuple):
-    """What a file seems to be."""
+    """The kind that a file seems to be of."""
 
     kind: str  # "" if it is not known
     sentence: str  # for "this is ..."
@@ -98,7 +98,7 @@ UNKNOWN = Seen("", "")
 
 
 def kind_of_file(path: Path) -> Seen:
-    """What a file is by its content; `UNKNOWN` for a file that cannot be read, or that is of no known kind."""
+    """The kind of a file by its content; `UNKNOWN` for a file that cannot be read, or of no known kind."""
     try:
         with path.open("rb") as file:
             head = file.read(HEAD)
@@ -127,10 +127,10 @@ def kind_of_file(path: Path) -> Seen:
 
 
 def of_archive(path: Path) -> Seen:
-    """What a ZIP archive is, by the names in it."""
+    """The kind of a ZIP archive, by the names in it."""
     try:
         names = zipfile.ZipFile(path).namelist()
-    except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError, RuntimeError):
+    except (OSError, zipfile.BadZipFile, ValueError, RuntimeError):
         return UNKNOWN
     if "about.npy" in names:
         return Seen("set-up", "a recording of Springtide (.npz)")
@@ -146,7 +146,7 @@ def of_archive(path: Path) -> Seen:
 
 
 def of_netcdf(path: Path | None, head: bytes) -> Seen:
-    """What a file of netCDF or HDF5 is, by the names that stand in it. path: to look at the whole."""
+    """The kind of a file of netCDF or HDF5, by the names that stand in it. path: to look at the whole."""
     try:
         content = head if path is None else path.read_bytes()
     except OSError:
@@ -156,7 +156,7 @@ def of_netcdf(path: Path | None, head: bytes) -> Seen:
 
 
 def of_text(text: str, path: Path, size: int) -> Seen:
-    """What a text is, by its beginning."""
+    """The kind of a text, by its beginning."""
     plain = text.lstrip()
     if plain.startswith(("{", "[")) and not re.match(r"\[\w+\]", plain):
         return of_json(text, size)
@@ -190,7 +190,7 @@ def of_text(text: str, path: Path, size: int) -> Seen:
 
 
 def of_json(text: str, size: int) -> Seen:
-    """What a JSON text is, by its keys."""
+    """The kind of a JSON text, by its keys."""
     keys = set(re.findall(r'"(\w+)"\s*:', text[:HEAD]))
     if "nbformat" in keys or {"cells", "metadata"} <= keys:
         return Seen("notebook", "a notebook (Jupyter)")
@@ -208,7 +208,7 @@ def of_json(text: str, size: int) -> Seen:
 
 
 def of_toml(path: Path) -> Seen:
-    """What a TOML file is, by its tables."""
+    """The kind of a TOML file, by its tables."""
     try:
         content = tomllib.loads(path.read_text("utf-8-sig"))
     except (OSError, ValueError, RecursionError):
@@ -221,7 +221,7 @@ def of_toml(path: Path) -> Seen:
 
 
 def of_table(text: str, path: Path) -> Seen:
-    """What a table is, by the names of its columns."""
+    """The kind of a table, by the names of its columns."""
     lines = text.splitlines()[:MAX_ROWS]
     try:
         rows, _ = split_rows("\n".join(lines), path)
@@ -256,7 +256,7 @@ def listed(words: list[str]) -> str:
 
 
 def check_file(name: str, path: Path, kinds: tuple[str, ...], allowed: str) -> None:
-    """Raises ValueError for a file that is seen to be of another kind, which names that kind and what takes it.
+    """Raises ValueError for a file that seems to be of another kind, with that kind and the reader that takes it.
 
     name: of the argument. kinds: that the reader takes. allowed: the forms that it reads, for the message.
     """

@@ -1,4 +1,4 @@
-"""Files of each kind given to each reader: the kind is named, and what takes it; its own readers take it."""
+"""Files of each kind given to each reader: a refusal names the kind and its reader; its own readers take it."""
 
 import itertools
 import json

@@ -14,7 +14,7 @@ SAID = {
     "?scene=square_sea&deep=true&depth=3": "depth has no effect with deep=true",
     "?scene=rope&sphere=false&sphere_radius=0.3": "sphere_radius has no effect with sphere=false",
     "?scene=race&ropes=1&spacing=2": "spacing has no effect with ropes=1",
-    "?scene=mooring&wave_height=0&regular=false": "regular has no effect with wave_height=0.0",
+    "?scene=mooring&wave_height=0&regular=true": "regular has no effect with wave_height=0.0",
     "?scene=radial_sea&spill=none&spill_volume=50": "spill_volume has no effect with spill=none",
 }
 
@@ -25,7 +25,7 @@ def test_a_link_with_a_parameter_without_effect_is_answered_with_a_line(query):
 
 
 def test_run_says_it_on_the_error_stream(tmp_path, capsys):
-    words = ["--set", "planet=Mars", "gravity=5", "size=32", "mesh=32"]
+    words = ["--set", "planet=Mars", "gravity=5", "size=64", "mesh=32"]
     assert (
         main(["run", "square_sea", "--seconds", "0.1", "--rate", "10", "--out", str(tmp_path / "a.npz"), *words]) == 0
     )

@@ -74,7 +74,7 @@ def write_files(results: Sequence[FolderResult], out: dict[str, Path | None]) ->
         path = out[option]
         if path is not None and str(path) != "-":
             with replacing(path) as draft:
-                draft.write_text(make(results), "utf-8")
+                draft.write_text(make(results), "utf-8-sig" if option == "csv" else "utf-8")  # the mark is for Excel
 
 
 def print_results(results: Sequence[FolderResult], *, everything: bool = False) -> None:

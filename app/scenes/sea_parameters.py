@@ -5,7 +5,6 @@ import functools
 import math
 from typing import Any
 
-from sim.ocean import read_spectrum
 from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Spectrum
 from sim.parameters import Parameter, parameters_of
@@ -37,6 +36,8 @@ def spectrum_values(params: object) -> dict[str, Any]:
 @functools.lru_cache(maxsize=8)
 def spectrum_in_file(path: str, time: str) -> Spectrum[Any]:
     """The measured spectrum in a file, read once; time: of its record, "" for the last. Raises as `read_spectrum`."""
+    from sim.ocean import read_spectrum  # a start without a file does without the formats of files
+
     return read_spectrum(path, time or None)
 
 

@@ -119,11 +119,11 @@ def missing_files(setup: Setup, present: object = None) -> str:
 
 
 def without_effect(setup: Setup) -> list[str]:
-    """A line on each parameter that a set-up names beside its preset and that has no effect with the others."""
+    """A line on each parameter that a set-up names, with another value than its preset, and that has no effect."""
     kind = scene_named(setup.scene)
-    preset = kind.presets.get(setup.preset, NO_VALUES)
+    preset = make_setup(kind, setup.preset).params
     hidden = kind.hidden(setup.params)
-    named = [name for name, value in setup.values.items() if name in hidden and preset.get(name) != value]
+    named = [name for name, value in setup.values.items() if name in hidden and getattr(preset, name) != value]
     return [f"{name} has no effect with {cause_of(kind, setup, name)}" for name in named]
 
 
@@ -460,6 +460,9 @@ def read_setup_text(what: str, path: Path) -> str:
 
     what: name of the file in errors. Raises ValueError if it cannot be read or holds no set-up.
     """
+    from sim.inputs.kinds import check_file  # a start without a file does without it
+
+    check_file(what, path, ("set-up", "json"), FORMS)
     try:
         with path.open("rb") as file:
             start = file.read(4 * MAX_LENGTH + 1)

@@ -1,1 +1,1 @@
-"""Data from elsewhere: what a file is by its content, and what its numbers can be."""
+"""Data from elsewhere: the kind of a file by its content, and the bounds of its numbers."""

@@ -20,8 +20,8 @@ class Bound(NamedTuple):
     low: float
     high: float
     reason: str  # for the range
-    below: str = ""  # what a smaller value may mean
-    above: str = ""  # what a larger value may mean
+    below: str = ""  # likely cause of a smaller value
+    above: str = ""  # likely cause of a larger value
 
 
 BOUNDS = (

@@ -88,3 +88,19 @@ def test_the_process_of_a_student_s_functions_imports_little() -> None:
     assert {name for name in loaded if name.split(".")[0] == "sim"} == {"sim", "sim.point_laws"}
     assert "numpy.random" not in loaded
     assert len(loaded) < 255  # numpy, and what a process that forks others needs
+
+
+READERS_OF_FILES = ("pint", "xarray", "tomllib", "sim.inputs.kinds", "sim.ocean.spectrum_files")
+
+
+def test_a_start_without_a_file_imports_no_reader_of_files() -> None:
+    """All scenes with their first set-ups, as the page shows them."""
+    scenes = "from app.scenes import NAMES, scene_named\nfrom app.scenes.setups import make_setup\n"
+    made = "for name in NAMES: make_setup(scene_named(name))\nprint(*sys.modules)"
+    loaded = python(f"from app.commands import serve\n{scenes}{made}")[-1].split()
+    assert "app.scenes.square_sea.scene" in loaded
+    assert [name for name in loaded if name.startswith(READERS_OF_FILES)] == []
+    assert len([name for name in loaded if name.startswith(("sim.", "app."))]) <= MAX_MODULES
+
+
+MAX_MODULES = 356  # of the project in a start, whose time they make

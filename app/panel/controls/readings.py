@@ -68,7 +68,8 @@ class Readings:
             async def _(event: ViserEvent) -> None:
                 if event.client is not None and has_table(text.content):
                     name = self.name_file(f"-{heading.lower().replace(' ', '-')}.csv")
-                    event.client.send_file_download(name, tables_csv(text.content).encode(), save_immediately=True)
+                    content = tables_csv(text.content).encode("utf-8-sig")  # Excel takes it for UTF-8 by its mark
+                    event.client.send_file_download(name, content, save_immediately=True)
 
             if commands := self.view.BUTTONS.get(heading):
                 buttons = self.gui.add_button_group("", tuple(commands))

@@ -79,7 +79,7 @@ class Files:
             return
         settings, plots, kind = self.settings, self.plots, self.settings.kind
         makers: dict[str, Make] = {
-            PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
+            PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode("utf-8-sig")),
             CHARTS: lambda _: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
             PICTURE: self.picture_file,
             REPLAY: lambda _: self.replay_file(),

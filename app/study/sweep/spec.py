@@ -16,6 +16,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
 from app.scenes.setups import Setup, file_name, make_setup, preset_setup, with_values, without_effect
 from app.study.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
+from sim.inputs.kinds import check_file
 from sim.parameters import Parameter, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_choice, check_number, is_whole_number, unreadable
 
@@ -66,6 +67,7 @@ class Spec:
 
 def read_spec(path: Path) -> Spec:
     """Read and check a spec. Raises ValueError with the key, its value and the allowed values."""
+    check_file("SPEC", path, ("sweep", "toml"), "the specification of a sweep (TOML)")
     try:
         text = path.read_text("utf-8")
     except OSError as error:

@@ -13,7 +13,8 @@ from sim.floating.hulls.closed_mesh import enclosed_volume, open_edges, parts_of
 from sim.validation import argument_error, check_choice, check_number
 
 AXES = ("x", "y")
-WELDS = (1e-6, 1e-5, 1e-4, 1e-3)  # [m] that are tried for advice
+WELDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 5e-2)  # [m] that are tried for advice
+MAX_WELD = 3e-3  # of the largest extent
 LEVEL = 1e-3  # of the largest extent: how far the edges of a plane of symmetry may lie from it
 TURNS = np.array([[0, 1, 2], [0, 2, 3]])  # corners of the two triangles of a quadrangle
 ON_EDGE = 1e-6  # of the size of a mesh: how far a node may lie from the edge that it divides
@@ -239,7 +240,7 @@ def place_of_gaps(vertices: np.ndarray, faces: np.ndarray) -> str:
 def remedy(vertices: np.ndarray, faces: np.ndarray) -> str:
     """The options that close a mesh, "" if none of those that are tried does."""
     size = float(np.ptp(vertices, axis=0).max())
-    welds = [0.0, *(tolerance for tolerance in WELDS if tolerance < LEVEL * size)]
+    welds = [0.0, *(tolerance for tolerance in WELDS if tolerance < MAX_WELD * size)]
     for mirror, cap in (("", ""), ("y", ""), ("x", ""), ("", "deck"), ("y", "deck"), ("x", "deck")):
         for weld in welds:
             try:

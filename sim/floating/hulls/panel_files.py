@@ -51,6 +51,9 @@ def read_mesh(path: Path, unit: str = "") -> Mesh:
     ending = path.suffix.lower()
     if not path.is_file():
         raise unreadable("path", path, FileNotFoundError() if not path.exists() else IsADirectoryError(21, "a folder"))
+    from sim.inputs.kinds import check_file  # reading meshes is rare
+
+    check_file("path", path, ("mesh",), FORMATS)
     if ending in PANELS:
         mesh, own = panels(path, PANELS[ending])
     elif ending in BY_MESHIO:

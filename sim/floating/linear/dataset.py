@@ -20,7 +20,7 @@ import numpy as np
 from sim.dispersion import wavenumber
 from sim.floating.hulls.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hulls.hull import Hull
-from sim.floating.linear.dataset_checks import doubts_of_damping, doubts_of_forces, doubts_of_matrices
+from sim.floating.linear.dataset_checks import doubts_of
 from sim.floating.linear.hydrodynamics import (
     DIRECTIONS,
     MIRROR_X,
@@ -94,6 +94,9 @@ def with_dataset(
 def read_dataset(path: str | Path) -> "Dataset":
     """The dataset in a file. Raises ValueError for any other file, ModuleNotFoundError without xarray."""
     check_kind("path", path, str | os.PathLike, "the name of a file")
+    from sim.inputs.kinds import check_file  # reading datasets is rare
+
+    check_file("path", Path(path), ("dataset",), "a dataset written by capytaine.export_dataset")
     import xarray  # half a second, and not needed by most
 
     try:
@@ -146,9 +149,6 @@ def converted(
     if (in_range & ~whole).any():
         left_out = ", ".join(f"{one:.4g}" for one in omega[in_range & ~whole])
         warnings.warn(f"{path}: not numbers, and left out, at omega {left_out} rad/s", UserWarning, stacklevel=3)
-    doubts = doubts_of_matrices(
-        omega[waves], by_omega["added_mass"][waves], by_omega["radiation_damping"][waves], MOTIONS
-    )
     length = table_length(mesh)
     offset = centre_of(dataset, path, chosen, rotation_center) - [mesh.centre[0], mesh.centre[1], 0.0]
     S = velocity_at(*offset)  # from the middle of the waterline to the centre of rotation
@@ -163,11 +163,10 @@ def converted(
     added = matrix("added_mass") / scale
     k = wavenumber(omega[waves] / math.sqrt(g), 1.0, water)
     headings, places = once_around(numbers(dataset, "wave_direction", ("wave_direction",), path))
-    X = np.sum([by_omega[name][waves][:, places] for name in FORCES], axis=0)
-    doubts += doubts_of_forces(omega[waves], X, MOTIONS)
+    forces = np.sum([by_omega[name][waves][:, places] for name in FORCES], axis=0)
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
-    X = X @ S * phase / (rho * g * unit * length)
+    X = forces @ S * phase / (rho * g * unit * length)
     if heading is not None or len(headings) == 1:
         i = place_of_heading(headings, path, heading)
         excitation, only = np.repeat(X[:, i : i + 1], len(DIRECTIONS), axis=1), float(headings[i])
@@ -186,10 +185,21 @@ def converted(
         heading=only,
         density=rho,
     )
+    return checked(table, path, omega[waves], [by_omega[name][waves] for name in MATRICES], forces)
+
+
+def checked(
+    table: LinearTable, path: str, omega: np.ndarray, matrices: Sequence[np.ndarray], forces: np.ndarray
+) -> LinearTable:
+    """The table; a UserWarning for each coefficient of the file that physics contradicts.
+
+    omega (n,) [rad/s], added mass and damping (n, 6, 6), forces (n, headings, 6): as the file has them. Raises
+    ValueError for coefficients that are not finite.
+    """
     if not_finite(table):
         raise argument_error("path", path, f"a dataset of finite coefficients; {not_finite(table)} is not")
-    for text in doubts or doubts_of_damping(omega[waves], table, MOTIONS):
-        warnings.warn(f"{path}: {text.removeprefix(WARNING)}", UserWarning, stacklevel=3)
+    for text in doubts_of(omega, *matrices, forces, table, MOTIONS):
+        warnings.warn(f"{path}: {text.removeprefix(WARNING)}", UserWarning, stacklevel=4)
     return table
 
 

@@ -15,6 +15,22 @@ MIN_NAMED = 1e-3  # of the largest damping of a kind of motion, below which anot
 KINDS = ((0, 1, 2), (3, 4, 5))  # motions of the same unit
 
 
+def doubts_of(
+    omega: np.ndarray,
+    added: np.ndarray,
+    damping: np.ndarray,
+    X: np.ndarray,
+    table: LinearTable,
+    motions: tuple[str, ...],
+) -> list[str]:
+    """Warnings on coefficients (n, 6, 6) and forces (n, headings, 6) of a file, and on the table made of them.
+
+    omega (n,) [rad/s], rising.
+    """
+    found = [*doubts_of_matrices(omega, added, damping, motions), *doubts_of_forces(omega, X, motions)]
+    return found or doubts_of_damping(omega, table, motions)
+
+
 def doubts_of_matrices(
     omega: np.ndarray, added: np.ndarray, damping: np.ndarray, motions: tuple[str, ...]
 ) -> list[str]:

@@ -49,6 +49,10 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     Raises ValueError with all unreadable parts, by section and line.
     """
     path, wrong = Path(path), Refusals()
+    if content is None:
+        from sim.inputs.kinds import check_file  # a start without a file does without it
+
+        check_file("file", path, ("deck",), "a deck of MoorDyn")
     found = split_sections(read_text(path) if content is None else decoded(content), wrong)
     needed = (TYPES, LINES) if RODS in found and found[RODS].rows else (TYPES, POINTS, LINES)
     for name in needed:

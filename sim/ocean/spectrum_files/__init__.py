@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from sim.inputs.kinds import check_file
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import from_buoy, from_summary
 from sim.ocean.spectrum_files.contents import FORMS, read_time
@@ -46,6 +47,7 @@ def read_spectrum(
     if place is not None and not (is_whole_number(place) and place > 0):
         raise argument_error("place", place, "a whole number of at least 1")
     when, numbers = None if time is None else read_time(time), missing_numbers(missing)
+    check_file("path", path, ("spectrum",), FORMS)
     if path.suffix.lower() in NETCDF:
         return from_wavespectra(path, when, place)
     text = read_text(path, FORMS)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.inputs.bounds import beyond
+from sim.inputs.kinds import check_file
 from sim.ocean.records.wave_record import zero_crossings
 from sim.ocean.spectrum_files.sea_summary import warnings_of
 from sim.tables import Meaning, line_error, read_table, read_text
@@ -53,6 +54,7 @@ def read_record(path: str | Path, missing: float | Sequence[float] | None = None
     """
     check_kind("path", path, str | os.PathLike, "the name of a file")
     path, numbers = Path(path), missing_numbers(missing)
+    check_file("path", path, ("record",), "a table (CSV) of times and heights")
     table = read_table(read_text(path, "a table (CSV)"), path, COLUMNS, ("t", "height"), numbers)
     if not {"t", "height"} <= table.columns.keys():
         raise argument_error("path", str(path), "a table with the columns t [s] and height [m]")

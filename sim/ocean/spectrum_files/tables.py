@@ -52,6 +52,7 @@ MEANINGS = (
     ),
 )  # fmt: skip
 OMEGA_NAMES = next(meaning.names for meaning in MEANINGS if meaning.kind is OMEGA)
+LARGEST_FREQUENCY = 5.0  # [Hz] of sea waves
 LEAST_DIRECTIONS = 4  # columns of a table with a row of directions
 
 
@@ -156,6 +157,12 @@ def from_matrix(rows: list[Row], path: Path, missing: Collection[float] | None =
     head, rows = rows[0], rows[1:]
     corner = read_corner(head.words[0], path, head.number)
     angles = np.array([number_of(word) for word in head.words[1:]], float)
+    down = np.array([number_of(row.words[0]) or 0.0 for row in rows])
+    if not corner.is_given and angles.max() <= LARGEST_FREQUENCY and down.max() > 2.0 * TURN:
+        allowed = (
+            "frequencies in the first column and directions in the first row; here they seem exchanged: transpose it"
+        )
+        raise line_error(path, head.number, allowed)
     if not corner.is_given and in_doubt(angles, DIRECTION.doubt):
         raise line_error(path, head.number, "the unit of the directions in its first word, as 'f (Hz), dir (rad)'")
     for row in rows:

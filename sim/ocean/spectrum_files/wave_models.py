@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.inputs.kinds import HEAD, WAVE_TEXTS
 from sim.ocean.records.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
@@ -22,22 +23,15 @@ READERS = (
     ({"freq", "efth"}, "read_netcdf"), ({"efth"}, "read_ww3"), ({"d2fd"}, "read_era5"), ({"AC", "SPSIG"}, "read_wwm"),
     (set(), "read_ncswan"),
 )  # fmt: skip
-# Words of the first lines of a text file, in small letters, and the reader.
-TEXT_READERS = (
-    (r"wavewatch", "read_ww3_station"), (r"triaxys (?:buoy data|buoy) report", "read_triaxys"),
-    (r"[^\n]*\n\s*nfreqs?,", "read_octopus"), (r"[^\n]*\bvariancedensity_0\b", "read_spotter"),
-    (r'\{.*"frequencydata"', "read_spotter"), (r"\s*\d+\s+\d+\s*-?\s*numfreq", "read_funwave"),
-)  # fmt: skip
 NDBC_NETCDF = {"spectral_wave_density", "frequency"}
 ALPHA1, ALPHA2, R1, R2 = "mean_wave_dir", "principal_wave_dir", "wave_spectrum_r1", "wave_spectrum_r2"
 MAGNETIC_READERS = ("read_triaxys",)
-HEAD = 100_000  # characters in which these words are
 
 
 def text_reader(text: str) -> str:
     """The reader of wavespectra for a text file, "" for another."""
     head = text[:HEAD].lower().lstrip("'\" #\n\r")
-    return next((name for words, name in TEXT_READERS if re.match(words, head, re.DOTALL)), "")
+    return next((name for words, name, _ in WAVE_TEXTS if re.match(words, head, re.DOTALL)), "")
 
 
 def from_wavespectra(

@@ -302,6 +302,33 @@ def test_a_sector_of_directions_has_no_waves_in_the_rest_of_the_circle(low, high
         assert spectrum.density(k * np.cos(at - outside), k * np.sin(at - outside), c) > 0.0
 
 
+@pytest.mark.parametrize("unit", ["m2/(rad/s)", "m2/rad/s", "m^2/(rad/s)", "m\u00b2 s/rad", "m2*s"])
+@pytest.mark.parametrize("brackets", ["()", "[]"])
+def test_a_unit_with_a_quotient_in_brackets_is_read(unit, brackets, tmp_path):
+    path = tmp_path / "table.csv"
+    rows = "".join(f"{TURN * f:.9g},{s / TURN:.9g}\n" for f, s in zip(F, S, strict=True))
+    path.write_text(f"omega (rad/s),S {brackets[0]}{unit}{brackets[1]}\n{rows}", encoding="utf-8")
+    assert seen(read_spectrum(path))[:2] == pytest.approx((HEIGHT, 10.0), rel=1e-3)
+
+
+def test_a_table_with_exchanged_rows_and_columns_is_named(tmp_path):
+    path = tmp_path / "table.csv"
+    rows = "".join(f"{d:g}," + ",".join(f"{s / 360.0:.6g}" for s in S) + "\n" for d in range(0, 360, 30))
+    path.write_text("," + ",".join(f"{f:.3f}" for f in F) + "\n" + rows, encoding="utf-8")
+    assert_refused("path", lambda: read_spectrum(path), "here they seem exchanged")
+
+
+def test_the_decimal_sign_of_a_table_is_that_of_all_its_numbers(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("f;S\n0,1;1,000\n0,2;2,000\n0,3;1.000,5\n", encoding="utf-8")
+    spectrum = read_spectrum(path)
+    assert TURN * spectrum.frequency_density(TURN * np.array([0.1, 0.2, 0.3])) == pytest.approx([1.0, 2.0, 1000.5])
+    path.write_text("f;S\n1;1,000\n2;2,000\n3;1,500\n", encoding="utf-8")
+    assert_refused("path", lambda: read_spectrum(path), "1,000 may be 1.000 or 1000")
+    path.write_text("f;S\n0,1;1,5\n0,2;2.5\n0,3;1,5\n", encoding="utf-8")
+    assert_refused("path", lambda: read_spectrum(path), "one decimal sign: 2.5 here, and 0,1 in line 2")
+
+
 def test_a_circle_that_is_closed_in_the_file_is_read_once(tmp_path):
     path = tmp_path / "table.csv"
     degrees = np.arange(0.0, 361.0, 30.0)

@@ -36,9 +36,7 @@ def call(function: Any, arguments: tuple[Any, ...]) -> Any:
 def conform(value: Any, like: Any) -> Any:
     """`value` in the form of a reference result: a float, an array of float64 or a tuple. Raises Wrong otherwise."""
     if value is None:
-        raise Wrong(
-            "it returns nothing here: each way through the function must end with return ...", "returns nothing"
-        )
+        raise Wrong("it returns nothing here: each way through the function must end with a return", "returns nothing")
     if isinstance(value, Foreign | str):
         found = value.type_name if isinstance(value, Foreign) else "text"
         cure = CURES.get(found, "")

@@ -15,7 +15,7 @@ from app.lab.process.call_limit import MAX_WAIT
 from app.lab.process.runner import BUSY, RunError, Runner
 
 TASK_LIMIT = 10.0  # [s] of processor time for all calls of one task
-NO_SPECIAL_CASE = ": look for a division by 0 or the root of a negative number"
+NO_SPECIAL_CASE = ": look for a division by 0, the root of a negative number, or entries that stay NaN"
 
 
 class Trial(NamedTuple):

@@ -41,7 +41,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from app.lab.check.diagnosis.causes import causes, traps
+from app.lab.check.diagnosis.causes import causes, late_causes, traps
 from app.lab.check.diagnosis.edits import Candidate, Tree, more_slips, slips
 from app.lab.check.diagnosis.effects import Effect, copied, state_of, watched
 from app.lab.process.cloth_march import ClothFunctions
@@ -319,7 +319,8 @@ class Worker:
         except LookupError:
             return []
         is_clean = raises_no_warning(plain(getattr(self.modules[file], function)), arguments)
-        for candidate in slips(tree, names, conditions) if kind == SLIPS else EDITS[kind](tree):
+        found_edits = EDITS[kind](tree) if kind != SLIPS else (*slips(tree, names, conditions), *late_causes(tree))
+        for candidate in found_edits:
             if time.process_time() > end:
                 break
             target = tree.function(candidate)

@@ -11,6 +11,7 @@ from typing import Any
 
 from app.lab.check.diagnosis.edits import (
     CAUSE,
+    OTHER,
     Candidate,
     Swap,
     Tree,
@@ -49,7 +50,7 @@ MAKERS = (
 )  # arrays whose kind follows from what they get
 REDUCTIONS = ("norm", "sum", "mean")
 OF_NUMBERS = (
-    "sqrt", "cbrt", "exp", "log", "sin", "cos", "tan", "arcsin", "arccos", "arctan", "abs", "floor", "norm", "sum",
+    "sqrt", "cbrt", "exp", "log", "sin", "cos", "tan", "arcsin", "arccos", "arctan", "floor", "norm", "sum",
     "tanh", "square",
 )  # fmt: skip
 PLAIN_NUMBERS = (0.5, 1, 2, 3, 4, 6)  # factors of laws
@@ -64,12 +65,20 @@ def traps(tree: Tree) -> Iterator[Candidate]:
 def causes(tree: Tree) -> Iterator[Candidate]:
     """Further edits with a cause."""
     for find in (
-        brackets, powers_of_products, moved_brackets, roots_and_squares, roundings, limits, rounded_constants,
+        brackets, powers_of_products, missing_stars, moved_brackets, roundings, limits, rounded_constants,
         fixed_numbers, degrees, early_returns, overwritten_arguments, shared_arrays, reductions, rolls,
         missing_components, components_of_lengths, means_of_arrays, fixed_entries, squares_of_sums, whole_comparisons,
         turns,
     ):  # fmt: skip
-        yield from find(tree)
+        yield from (candidate for candidate in find(tree) if not tree.is_test(candidate))
+
+
+def late_causes(tree: Tree) -> Iterator[Candidate]:
+    """Edits with a cause that are less likely than a condition too much, or another sign."""
+    for candidate in (*brackets(tree), *moved_brackets(tree), *limits(tree), *fixed_numbers(tree)):
+        if tree.is_test(candidate):
+            yield candidate._replace(kind=OTHER)
+    yield from roots_and_squares(tree)
 
 
 def name_of(node: ast.AST) -> str:
@@ -159,6 +168,19 @@ def brackets(tree: Tree) -> Iterator[Candidate]:
         yield from together(swaps, "Brackets are missing." if first < last else "Brackets are wrong.")
 
 
+def missing_stars(tree: Tree) -> Iterator[Candidate]:
+    """a * 2 for a ** 2."""
+    for node in tree.of(ast.BinOp):
+        chain = Chain(node)
+        if isinstance(tree.parent(node), ast.BinOp) or not all(sign in SIGNS for sign in chain.signs):
+            continue
+        for i, sign in enumerate(chain.signs):
+            if sign is ast.Mult and is_number(chain.operands[i + 1]):
+                other = Chain(node)
+                other.signs[i] = ast.Pow
+                yield Candidate(((node, expression(other.text())),), CAUSE, "A power is written with two stars.")
+
+
 def powers_of_products(tree: Tree) -> Iterator[Candidate]:
     """(a b)² for a² b and a b², and the other way round."""
     for node in tree.of(ast.BinOp):
@@ -183,7 +205,8 @@ def roots_and_squares(tree: Tree) -> Iterator[Candidate]:
         for first, last in itertools.combinations_with_replacement(range(count), 2):
             for before, after, words in (("np.sqrt", "", "A root"), ("", " ** 2", "A square")):
                 text = chain.text(first, last, before, after)
-                yield Candidate(((node, expression(text)),), CAUSE, f"{words} is missing.")
+                if last == count - 1 or not chain.before_power(last):
+                    yield Candidate(((node, expression(text)),), OTHER, f"{words} is missing.")
 
 
 def moved_brackets(tree: Tree) -> Iterator[Candidate]:
@@ -401,6 +424,8 @@ def turns(tree: Tree) -> Iterator[Candidate]:
         if is_range(call):
             last, first = call.args[-1], call.args[:-1] or [ast.Constant(0)]
             less, more = (ast.BinOp(last, op, ast.Constant(1)) for op in (ast.Sub(), ast.Add()))
+            if isinstance(last, ast.Constant) and isinstance(last.value, int):
+                less, more = (ast.Constant(last.value + step) for step in (-1, 1))  # type: ignore[assignment]
             ends: list[tuple[str, list[ast.expr]]] = [("many", [*call.args[:-1], less])]
             if isinstance(last, ast.BinOp) and isinstance(last.op, ast.Sub) and is_number(last.right):
                 left, less_off = last.left, getattr(last.right, "value", 1) - 1
@@ -487,6 +512,15 @@ def components_of_lengths(tree: Tree) -> Iterator[Candidate]:
             new = expression(f"{source_of(own[0].args[0])}[{i}]")
             swaps = tuple((call, copy.deepcopy(new)) for call in own)
             yield Candidate(swaps, CAUSE, "This is the length of the vector, not a component.")
+    for node in tree.of(ast.BinOp, ast.Call):
+        sides = [node.left, node.right] if isinstance(node, ast.BinOp) else node.args
+        is_square = (
+            isinstance(node.op, ast.MatMult) if isinstance(node, ast.BinOp) else name_of(node) in ("dot", "inner")
+        )
+        if is_square and len(sides) == 2 and source_of(sides[0]) == source_of(sides[1]):
+            for i in range(3):
+                new = expression(f"{source_of(sides[0])}[{i}] ** 2")
+                yield Candidate(((node, new),), CAUSE, "This is the square of the whole vector, not of a component.")
 
 
 def means_of_arrays(tree: Tree) -> Iterator[Candidate]:

@@ -99,6 +99,7 @@ class Tree:
         }
         stored = (node.id for node in self.nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))
         self.names = list(dict.fromkeys((*self.arguments, *stored)))
+        self.tests = {part for node in self.of(ast.If, ast.IfExp, ast.While) for part in ast.walk(node.test)}
         self.texts = Counter(
             (getattr(node, "lineno", 0), source_of(node)) for node in self.nodes if isinstance(node, ast.expr)
         )
@@ -106,6 +107,10 @@ class Tree:
     def parent(self, node: ast.AST) -> ast.AST:
         """The node that holds another one."""
         return self.places[node][0]
+
+    def is_test(self, candidate: Candidate) -> bool:
+        """True if an edit changes a condition."""
+        return any(node in self.tests for node, _ in candidate.swaps)
 
     def statement(self, node: ast.AST) -> ast.AST:
         """The statement of a node."""
@@ -198,9 +203,8 @@ def slips(tree: Tree, names: Sequence[str], conditions: Sequence[str]) -> Iterat
 
     names: the arguments as the reference has them. conditions: of the reference, in these.
     """
-    tests = {child for node in tree.of(ast.If, ast.IfExp) for child in ast.walk(node.test)}
     for node in tree.nodes:
-        parent, is_test = tree.parent(node), node in tests
+        parent, is_test = tree.parent(node), node in tree.tests
         if isinstance(node, ast.If | ast.IfExp):
             for holds in (True, False):
                 fixed = ast.Constant(holds)

@@ -1,10 +1,12 @@
 """A sentence about a wrong function is true of that function, and says what to change."""
 
 import ast
+import json
 import random
 import re
 import textwrap
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,8 +18,8 @@ from app.lab.check.diagnose import behave
 from app.lab.check.diagnosis.differences import number
 from app.lab.check.diagnosis.edits import Tree, more_slips
 from app.lab.check.diagnosis.effects import EFFECTS
-from app.lab.check.inputs import inputs_of
-from app.lab.check.program_check import check_exactly, compare
+from app.lab.check.inputs import Watched, inputs_of
+from app.lab.check.program_check import check_exactly, check_program, compare, settled
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong
 from app.lab.course.task import Task, load_tasks
@@ -153,6 +155,105 @@ def test_mistakes_are_named_so_that_one_knows_what_to_change(runner: Runner, nam
         assert any(word in f"{said.mistake}: {said}" for word in words.split("|")), (body, said.mistake, str(said))
 
 
+FIRST_YEAR = json.loads((Path(__file__).parents[1] / "solutions" / "first_year_mistakes.json").read_text("utf-8"))
+FORCE = RIGHT["spring_force"]
+
+
+@pytest.mark.parametrize("step", [16, pytest.param(1, marks=[pytest.mark.stress, pytest.mark.timeout(3600)])])
+def test_no_mistake_of_a_first_year_is_called_right_and_each_repair_does_what_it_says(
+    runner: Runner, step: int
+) -> None:
+    """Each repair is done as the sentence says, and checked again. step: every how many mistakes one is tried."""
+    refused = []
+    for case in FIRST_YEAR[::step]:
+        task = TASKS[case["function"]]
+        source = source_of(task, case["body"])
+        if "spring_force(" in case["body"]:
+            source += source_of(TASKS["spring_force"], FORCE).removeprefix(HEAD)
+        said = judged(runner, task, source)
+        assert said is not None, case
+        if says_a_repair(str(said)) and (again := judged(runner, task, followed(source, str(said)))) is not None:
+            refused.append((case, str(said), str(again)))
+    assert refused == []
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "body"),
+    [
+        ("spring_force", "whole numbers", "F = np.zeros(3, dtype=int)\nr = x2 - x1\nl = np.sqrt(r @ r)\nfor i in range(3):\n"
+         "    F[i] = stiffness * (l - rest_length) * r[i] / l - damping * (v1[i] - v2[i])\nreturn F"),
+        ("gravity", "Brackets are missing", "return 9.81 * mass_ratio ** 1 / 3"),
+        ("dispersion", "Without np.tanh(k)|gravity * k in place of",
+         "w0 = 2 * np.pi / repeat_time\nreturn calm * np.floor(np.sqrt(gravity * k * np.tanh(k)) / w0) * w0"),
+        ("wave_decay", "one factor only",
+         "return amplitude * np.exp(-2 * viscosity * (wavenumber * time) ** 2)"),
+        ("reflectance", "never holds", "if angle > np.arcsin(1 / index):\n    return 1\nc = np.cos(angle)\n"
+         "t = np.sqrt(1 - (np.sin(angle) / index) ** 2)\nRs = ((c - index * t) / (c + index * t)) ** 2\n"
+         "Rp = ((index * c - t) / (index * c + t)) ** 2\nreturn (Rs + Rp) / 2"),
+    ],
+)  # fmt: skip
+def test_a_cause_is_named_rather_than_a_text_that_fits_by_accident(
+    runner: Runner, name: str, words: str, body: str
+) -> None:
+    source = source_of(TASKS[name], body)
+    said = judged(runner, TASKS[name], source)
+    assert any(word in str(said) for word in words.split("|")), said
+    assert judged(runner, TASKS[name], followed(source, str(said))) is None
+
+
+CALLERS = {
+    "rope_acceleration": """
+n = len(x)
+F = -drag * v
+for i in range(n - 1):
+    f = spring_force(x[i], x[i + 1], v[i], v[i + 1], stiffness, damping, rest_length)
+    F[i] += f
+    F[i + 1] -= f
+a = F / mass
+a[:, 2] -= gravity
+a[0] = 0
+return a""",
+    "cloth_forces": """
+F = np.zeros(x.shape)
+for (i, j), d in zip(links, rest_lengths):
+    f = spring_force(x[i], x[j], v[i], v[j], stiffness, damping, d)
+    F[i] += f
+    F[j] -= f
+return F""",
+}
+
+
+@pytest.mark.parametrize("name", CALLERS)
+@pytest.mark.parametrize("force", ["return x1 - x2", "..."])
+def test_a_right_function_waits_for_the_one_that_it_calls(tmp_path: Path, name: str, force: str) -> None:
+    task = TASKS[name]
+    (tmp_path / "rope.py").write_text(source_of(TASKS["spring_force"], force), "utf-8")
+    head = "" if task.file == "rope.py" else "from rope import spring_force\n"
+    with (tmp_path / task.file).open("a", encoding="utf-8") as file:
+        file.write(head + source_of(task, CALLERS[name]))
+    own = [task, TASKS["spring_force"]]
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        verdicts = {one.name: check_program(tmp_path, runner, one, own) for one in own}
+    assert verdicts[name].state == "right"
+    assert verdicts[name].calls == ("spring_force",)
+    found = settled(name, verdicts)
+    assert found is not None
+    assert found.state == "waits"
+    assert "it calls spring_force, which is" in found.text
+
+
+@pytest.mark.parametrize("name", sorted(TASKS))
+def test_each_comparison_of_a_reference_has_inputs_on_both_sides(name: str) -> None:
+    task = TASKS[name]
+    watched = Watched(task.function)
+    notes = [watched.sides(sample) for sample in inputs_of(task.check, name)]
+    for number, text in enumerate(watched.texts):
+        sides = np.concatenate([note[number].ravel() for note in notes if number in note])
+        assert (sides < 0.0).any() and (sides > 0.0).any(), text
+        size = np.median(np.abs(sides[sides != 0.0]))
+        assert np.abs(sides).min() < 0.1 * size, text
+
+
 def test_the_mistakes_are_as_many_as_the_audit_made() -> None:
     assert len(MISTAKES) == 95
     assert len(NAMES) == 23
@@ -259,7 +360,7 @@ def wrong_at_random(rng: random.Random) -> Iterator[tuple[Task, str]]:
         yield TASKS[name], ast.unparse(ast.fix_missing_locations(tree)) + "\n"
 
 
-@pytest.mark.parametrize("count", [6, pytest.param(300, marks=[pytest.mark.stress, pytest.mark.timeout(3600)])])
+@pytest.mark.parametrize("count", [6, pytest.param(5000, marks=[pytest.mark.stress, pytest.mark.timeout(3600)])])
 def test_no_sentence_about_functions_with_edits_at_random_is_untrue(runner: Runner, count: int) -> None:
     drawn = wrong_at_random(random.Random(RANDOM_SEED))
     untrue, judged_wrong = [], 0

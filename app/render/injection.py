@@ -26,6 +26,7 @@ from app.render.markup.html import Html, fill
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 CONTACT_SHADOW = "contact_shadow"
+WHOLE = " whole"  # end of a page's word once its first picture is whole (`js/scene/main.js`)
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
@@ -43,6 +44,7 @@ class ShaderInjector:
         self._sky = ""  # name of the sky that lights the scene; "" before the first picture
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> nodes that it draws with their shader
+        self.whole: set[int] = set()  # clients that have shown a whole picture of the scene
         self.is_recorded = False  # True if drawing is only recorded, for pages that have the script
         server.on_client_disconnect(self._forget)
         self.restart(server)
@@ -51,6 +53,7 @@ class ShaderInjector:
         """Begin a scene: a new hidden field through which pages report, so nothing is left of an earlier one."""
         self._watched.clear()
         self._drawn.clear()
+        self.whole.clear()
         self._sky = ""
         inbox: GuiHandle = server.gui.add_text("Shaders", "", multiline=True, visible=False)
         self._inbox = uuid_of(inbox)
@@ -58,8 +61,11 @@ class ShaderInjector:
 
         @inbox.on_update
         async def _(event: ViserEvent) -> None:
-            _, *names = inbox.value.split("\n")  # the page's own word comes first: two pages may report the same
+            # The page's own word comes first: two pages may report the same.
+            first, *names = inbox.value.split("\n")
             self._drawn[event.client_id] = frozenset(names)
+            if first.endswith(WHOLE):
+                self.whole.add(event.client_id)
 
     def _words(self) -> Html:
         """The field of the page: where it reports to, and the parts of a whole picture."""
@@ -79,6 +85,7 @@ class ShaderInjector:
     async def _forget(self, client: viser.ClientHandle) -> None:
         """A browser has left."""
         self._drawn.pop(client.client_id, None)
+        self.whole.discard(client.client_id)
         self._seen.pop(client.client_id, None)
 
     def expect_sky(self, name: str) -> None:

@@ -17,16 +17,19 @@ from app.panel.settings import SceneSettings
 from app.panel.sharing.compare import ComparisonCalls
 from app.panel.sharing.scene_switches import SceneSwitches
 from app.render.cameras import ClientCamera
+from app.render.injection import injector_of
 from app.render.markup.html import note
 from app.scenes import NAMES, view_named
 from app.scenes.ahead.compiling import Compiling, describe
 from app.scenes.contract import AnyKind, AnyScene
+from app.server.first_picture import FirstPicture
 from app.server.loop.clock import PATIENCE
 from app.server.loop.commands import CompileGate
 from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
 from app.server.placing import CameraPlacing
 from app.server.preparation import Preparation
 from app.server.replay_file import replay_html
+from app.server.web.guard import MessageFilter
 from app.server.web.transport import Transport
 
 if TYPE_CHECKING:
@@ -42,6 +45,7 @@ class SceneHost(Protocol):
     """The parts of a `Viewer` that are common to all its scenes."""
 
     server: viser.ViserServer
+    message_filter: MessageFilter
     transport: Transport
     compiling: Compiling
     preparation: Preparation
@@ -106,11 +110,16 @@ class ServedScene:
             beside=viewer.beside,
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
-        self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)
+        self.first_picture = FirstPicture(injector_of(self.server), viewer.message_filter.pages)
+        self.loop = SimLoop(self.scene, self.commands, self.audience, paused=paused)
         self.gate = CompileGate(viewer.compiling, kind, self.loop.record, self.loop.runs.keep_dropped)
         self.loop.admit = self.gate.admit
         if params != wanted:  # the loop fails again and gives the reason; the panel has the controls to correct it
             self.settings.load_params(wanted, self.settings.nearest_preset(wanted))
+
+    def audience(self) -> int:
+        """The number of watching browsers, 0 until the first of them has a whole picture."""
+        return self.first_picture.audience(self.server.get_clients(), self.viewer.audience())
 
     def start(self) -> None:
         """Run the threads."""
@@ -135,7 +144,7 @@ class ServedScene:
             fresh.clear()
             shown_at = clock.now()
             if not self.stop.is_set():
-                self.show_latest()
+                self.attempt("page could not be updated", self.show_latest)
 
     def show_latest(self) -> None:
         """Hand the latest snapshot over; without a new one only the panel."""
@@ -144,33 +153,33 @@ class ServedScene:
         # One message for all: each message wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()
-        recorder.follow(snapshot)
-        recorder.advance(now)
+        self.attempt("recording could not go on", lambda: recorder.follow(snapshot))
+        self.attempt("recording could not go on", lambda: recorder.advance(now))
         recorded = recorder.shown
         with self.transport.counted():
             if recorded is not None:
                 if recorded is not self.recorded:
                     self.drawn += 1
-                    self.attempt("picture", lambda: self.view.show(recorded.frame))
+                    self.attempt("picture could not be drawn", lambda: self.view.show(recorded.frame))
                 self.shown = 0  # the present is redrawn after it
             elif snapshot.serial != self.shown:
                 self.shown = snapshot.serial
                 self.drawn += 1
-                self.attempt("picture", lambda: self.view.show(snapshot.frame))
+                self.attempt("picture could not be drawn", lambda: self.view.show(snapshot.frame))
                 self.cameras.update(snapshot, self.settings.placing)  # another scene size moves cameras
             self.recorded = recorded
-            self.attempt("compiling", self.show_compiling)
-            self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
-        recorder.note(snapshot, now)
+            self.attempt("panel could not be updated", self.show_compiling)
+            self.attempt("panel could not be updated", lambda: self.panel.update(snapshot, rows, busy))
+        self.attempt("recording could not go on", lambda: recorder.note(snapshot, now))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Run a drawing action; an exception halts the run once, and this thread continues."""
+        """Do a part of the viewer's work; an exception halts the run once, and this thread continues."""
         try:
             action()
         except Exception as error:
             if not self.loop.run.halted:
                 traceback.print_exc()
-                self.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
+                self.commands.put(Halt(f"The {what}, {type(error).__name__}: {error}"))
 
     def show_compiling(self) -> None:
         """Show the running compilation: for a chosen preset, or ahead."""

@@ -22,7 +22,8 @@ from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of
 from tests.stress.tally import Tally
 
-CRASHES = "stopped with", "not finite", "could not be drawn"  # how a halt is worded that is no divergence
+# How a halt is worded that is no divergence.
+CRASHES = "stopped with", "not finite", "could not be drawn", "could not go on", "could not be updated"
 
 
 def infinite(value: Any, path: str = "") -> Iterator[str]:

@@ -11,6 +11,7 @@ that may take.
 
 import asyncio
 import contextlib
+import contextvars
 import weakref
 from collections.abc import AsyncGenerator
 from urllib.parse import parse_qs, urlsplit
@@ -23,7 +24,8 @@ from app.server.web.rate_limit import RateLimit
 
 BEAT = "SpringtideBeat"  # type of the message, which `js/before/connection.js` takes out
 BEAT_INTERVAL = 2.0  # [s]
-PAGE = "page"  # name of the page, in the query of a connection
+PAGE_NAME = "page"  # name of the page, in the query of a connection
+PAGE: contextvars.ContextVar[str] = contextvars.ContextVar("page")  # on a connection; "" for programs
 SMALLEST_RATE = 20e3  # [bytes/s] of a line whose rate is not known
 LARGE = 100_000  # [bytes] of a message on such a line, from which it is announced
 MAX_SILENCE = 60.0  # [s] announced
@@ -50,7 +52,8 @@ class Beats:
 
     def take_over(self, connection: ViserConnection) -> None:
         """End the earlier connection of the page that connects, which nobody reads any more."""
-        name = parse_qs(urlsplit(str(connection.request.path)).query).get(PAGE, [""])[0]
+        name = parse_qs(urlsplit(str(connection.request.path)).query).get(PAGE_NAME, [""])[0]
+        PAGE.set(name)
         earlier = self.pages.get(name)
         if name:
             self.pages[name] = connection

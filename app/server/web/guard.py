@@ -46,7 +46,7 @@ from app.render.handles.viser_inside import (
 )
 from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, read_origin, refusal
-from app.server.web.beat import Beats
+from app.server.web.beat import PAGE, Beats
 from app.server.web.page import own_answer, with_cover
 from app.server.web.panes import Panes
 from app.server.web.rate_limit import LIMIT, RateLimit, put_small_first
@@ -282,6 +282,7 @@ class MessageFilter:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
         self.is_in_place = False  # True if messages pass through it
+        self.pages: dict[ClientId, str] = {}  # connected clients that are pages of ours, with their names
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with its value bounded if that is enough, or None if it is refused.
@@ -405,10 +406,13 @@ def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> boo
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
         intakes[client] = intake = Intake(message_filter, handlers)
+        if name := PAGE.get(""):
+            message_filter.pages[client] = name
         return intake.queue
 
     def leave(client: ClientId) -> None:
         intakes.pop(client).close()
+        message_filter.pages.pop(client, None)
         forget_client(server, client)
 
     return intercept(server, join, leave)

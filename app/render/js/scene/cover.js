@@ -2,6 +2,7 @@
 // (frames.js).
 
 import { springtide } from "../core/springtide.js";
+import { onLook } from "../core/watch.js";
 
 const SETTLING = 300; // [ms] after a panel, in which the objects of its scene arrive
 const UNDRAWN = 10_000; // [ms] after which the cover goes if no frame has begun
@@ -34,5 +35,19 @@ export function awaitsPicture(scene) {
   if (!scene) return since < SETTLING;
   if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
   pictured = scene;
+  isSimple = Boolean(showsWhole && !showsWhole());
   return false;
 }
+
+let isSimple = false; // true if the cover went before the picture was complete
+const simple = document.createElement("div");
+simple.id = "springtide-simple";
+simple.setAttribute("role", "status");
+document.body.append(simple);
+
+// Say over the picture that it is not complete yet.
+onLook(() => {
+  isSimple = isSimple && !springtide.showsWhole?.();
+  const text = isSimple && pictured === opened ? "Simple drawing until the graphics are ready" : "";
+  if (simple.textContent !== text) simple.textContent = text;
+});

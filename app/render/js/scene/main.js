@@ -9,7 +9,7 @@ import { Life, page } from "../core/life.js";
 import { beforeRender } from "../core/render_hook.js";
 import { springtide } from "../core/springtide.js";
 import { connectionNumber, PAGE, send, startedViewer } from "../core/viewer.js";
-import { onControls } from "../core/watch.js";
+import { onControls, onLook } from "../core/watch.js";
 import { openWater } from "../sea/open_water.js";
 import { rain } from "../sea/rain.js";
 import { skiesDrawn } from "../sea/sky_table.js";
@@ -19,6 +19,7 @@ import { QUALITY } from "../shading/quality.js";
 import { beginFrame, isLinked, meshOf } from "../shading/shaders.js";
 import { lightMeshes } from "./ambient.js";
 import { contact } from "./contact.js";
+import { pictured } from "./cover.js";
 import { makeOpaque, paceFrames } from "./frames.js";
 import { renewInstances } from "./instances.js";
 import { dressLabels } from "./labels.js";
@@ -37,11 +38,12 @@ let drawn = "", reported = "";
 const field = () => document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders;
 const isPlain = () => !field() && document.querySelector(".springtide-panel[data-state]") !== null;
 
-// Report the names of the nodes that are drawn with their shader, once to each field of each connection and after each change.
-// Each scene has its own field.
+// Report the names of the nodes that are drawn with their shader, and whether the picture of the scene is whole: the run waits
+// for that. Once to each field of each connection and after each change. Each scene has its own field.
 function report() {
-  const now = `${connectionNumber()} ${field()}\n${drawn}`;
-  if (field() && reported !== now && send(field(), `${PAGE}\n${drawn}`)) reported = now;
+  const word = `${PAGE}${field() && pictured === field() ? " whole" : ""}\n${drawn}`;
+  const now = `${connectionNumber()} ${field()} ${word}`;
+  if (field() && reported !== now && send(field(), word)) reported = now;
 }
 
 // Call a function for each shader and each node that requests it: { base, mesh, data }.
@@ -100,3 +102,4 @@ page.own(() => current?.life.end());
 beforeRender("data", () => forEachShaded((shader, node) => shader.unpack?.(node)));
 beforeRender("materials", dressScene);
 onControls(report);
+onLook(report);

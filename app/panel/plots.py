@@ -21,6 +21,7 @@ from app.render.markup.axis import Scale, scale_of
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot
 
+MAX_STEP_RATIO = 3.0  # of a step between two samples and the usual one; a longer step is a gap of the curve
 SEND_INTERVAL = 0.12  # [s] between two sends
 MAX_ROWS = 5400  # kept: three minutes of a scene that adds 30 a second
 SHOWN_ROWS = 900  # in a chart: half a minute of them
@@ -153,15 +154,17 @@ class Plots:
             return
         width = 1 + len(self.kind.series)
         now, before = (np.array(rows, np.float64).reshape(-1, width) for rows in (shown, beside(shown, kept)))
-        times = np.union1d(now[:, 0], before[:, 0])
+        gaps = [gaps_in(one[:, 0]) for one in (now, before)]
+        middles = [gap.mean(axis=1) for gap in gaps]  # where the curves have a point without a value
+        times = np.unique(np.concatenate((now[:, 0], before[:, 0], *middles)))
         for name in behind:
             self.sent[name] = ends
             axes = self.kind.plots[name]
             rows = [1 + self.kind.series.index(one) for one in axes.series]
-            lines, columns = axes.lines, [at_times(times, now, row) for row in rows]
+            lines, columns = axes.lines, [without(gaps[0], times, at_times(times, now, row)) for row in rows]
             if kept:
                 lines = (*lines, *(kept_line(line) for line in lines))
-                columns += [at_times(times, before, row) for row in rows]
+                columns += [without(gaps[1], times, at_times(times, before, row)) for row in rows]
             lines, columns = with_numbers(lines, columns)
             self.send(name, Chart("t [s]", lines, (times, *columns)))
 
@@ -261,6 +264,21 @@ def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int)
     if not len(rows):
         return np.full(len(times), math.nan)
     return np.interp(times, rows[:, 0], rows[:, column], math.nan, math.nan)
+
+
+def gaps_in(times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The gaps between samples, (n, 2) [s]: where nothing was sampled for much longer than usual."""
+    steps = np.diff(times)
+    if not len(steps):
+        return np.empty((0, 2))
+    (before,) = np.nonzero(steps > MAX_STEP_RATIO * np.median(steps))
+    return np.stack((times[before], times[before + 1]), axis=1)
+
+
+def without(gaps: NDArray[np.float64], times: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at times [s], with NaN inside the gaps."""
+    inside = np.searchsorted(gaps[:, 0], times, "left") > np.searchsorted(gaps[:, 1], times, "right")
+    return np.where(inside, math.nan, values)
 
 
 def kept_line(line: ChartLine) -> ChartLine:

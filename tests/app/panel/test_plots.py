@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.messages import ChartLine, Snapshot, Status
-from app.panel.plots import KEPT_DASH, SHOWN_ROWS, Plots, at_times, beside, with_kept
+from app.panel.plots import KEPT_DASH, SHOWN_ROWS, Plots, at_times, beside, gaps_in, with_kept, without
 from app.scenes import scene_named
 from app.scenes.charts import Chart, lines_of, with_numbers
 
@@ -102,3 +102,15 @@ def test_a_line_without_a_number_is_in_no_key() -> None:
     shown, _ = with_numbers(lines, columns)
     assert [line.label for line in shown] == ["line 1", "line 2", "line 3", "largest so far"]
     assert with_numbers(lines, [column[:0] for column in columns])[0] == lines  # before there is any number
+
+
+def test_a_curve_has_a_gap_where_nothing_was_sampled_and_only_there() -> None:
+    times = np.array([0.0, 0.1, 0.2, 0.3, 1.3, 1.4, 1.5, 1.79])
+    gaps = gaps_in(times)
+    np.testing.assert_allclose(gaps, [[0.3, 1.3]])
+    places = np.array([0.0, 0.25, 0.3, 0.31, 0.8, 1.29, 1.3, 1.6])
+    found = without(gaps, places, np.ones(len(places)))
+    assert np.isnan(found).tolist() == [False, False, False, True, True, True, False, False]
+    for few in ([], [1.0], [1.0, 9.0]):
+        assert gaps_in(np.array(few)).shape == (0, 2)
+    assert np.isnan(without(gaps_in(np.array([1.0])), places, np.ones(len(places)))).sum() == 0

@@ -3,9 +3,11 @@
 With large text a mouse reaches the last control, too.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import imageio.v3 as iio
+import numpy as np
 import pytest
 
 from app.lab.course.task import load_tasks
@@ -202,3 +204,78 @@ def test_every_control_is_reached_by_tab_and_has_a_name(opened: tuple[Viewer, Ta
     names = [name for name, _, _ in controls]
     assert "Main" in names
     assert sum("multi-slider-thumb" in kind for _, _, kind in controls) > 7
+
+
+# Shapes in forced colours: the ratio of the lightest to the darkest colour in the rows and columns of their boxes.
+CONTROLS = {
+    "button": '[data-springtide-icon="Reset"]',
+    "track": ".multi-slider-track-container",
+    "thumb": ".multi-slider-thumb",
+    "tab": '[role="tab"]',
+    "gauge": "div:has(> .springtide-step-share) + div",
+}
+SHOWN_BOXES = """selectors => Object.fromEntries(Object.entries(selectors).map(([name, selector]) => {
+    const box = [...document.querySelectorAll(selector)].find(e => e.checkVisibility()).getBoundingClientRect();
+    return [name, [box.x, box.y, box.width, box.height]]; }))"""
+SMALL_TARGETS = """() => [...document.querySelectorAll(
+        "button, [role=button], [role=tab], input[type=checkbox], select, .multi-slider-thumb")]
+    .filter(e => e.checkVisibility({ visibilityProperty: true }) && e.getBoundingClientRect().width > 1)
+    .map(e => { const { width, height } = e.getBoundingClientRect();
+        return [e.getAttribute("aria-label") || e.textContent || e.className, width, height]; })
+    .filter(([, width, height]) => width < 24 || height < 24)"""
+
+
+def luminance(colours: np.ndarray) -> np.ndarray:
+    """Relative luminance of colours (..., 3) from 0 to 255, as WCAG 2.2 defines it."""
+    parts = colours / 255.0
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    return linear @ np.array([0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.long
+def test_controls_have_their_shapes_in_forced_colours(open_tab: Callable[..., Tab]) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("rope")
+        tab = open_tab(viewer.port)
+        tab.wait_for_panel(viewer)
+        tab.page.emulate_media(forced_colors="active")
+        tab.page.wait_for_timeout(500)
+        for name, (x, y, width, height) in tab.page.evaluate(SHOWN_BOXES, CONTROLS).items():
+            clip = {"x": x - 3, "y": y - 3, "width": width + 6, "height": height + 6}
+            found = luminance(iio.imread(tab.page.screenshot(clip=clip))[..., :3].astype(float))
+            assert (found.max() + 0.05) / (found.min() + 0.05) >= 3.0, name
+    finally:
+        viewer.shut()
+
+
+@pytest.mark.long
+def test_targets_are_large_enough_for_a_finger(chromium: Any) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    page = chromium.new_page(viewport={"width": 900, "height": 560}, has_touch=True, is_mobile=True)
+    try:
+        viewer.open("rope")
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2")
+        page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached", timeout=120_000)
+        page.wait_for_timeout(1000)
+        assert page.evaluate("matchMedia('(pointer: coarse)').matches")
+        assert page.evaluate(SMALL_TARGETS) == []
+    finally:
+        page.close()
+        viewer.shut()
+
+
+@pytest.mark.long
+def test_a_screen_reader_hears_the_state_of_the_scene_and_not_the_cover(open_tab: Callable[..., Tab]) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("rope")
+        tab = open_tab(viewer.port)
+        tab.wait_for_panel(viewer)
+        assert "Preparing" not in tab.page.inner_text("body")
+        picture = tab.page.get_by_role("img", name="Rope. Lab code: 10 points. Running t = ")
+        tab.wait(picture.count)
+        viewer.loop.commands.put(Pause())
+        tab.wait(tab.page.get_by_role("img", name="Rope. Lab code: 10 points. Paused t = ").count)
+    finally:
+        viewer.shut()

@@ -1,7 +1,7 @@
 // Additions to viser's panel for keyboards and screen readers: folders and sliders that Tab reaches, and names.
 
 import { page } from "../core/life.js";
-import { onControls, onValues } from "../core/watch.js";
+import { onControls, onLook, onValues } from "../core/watch.js";
 
 const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
 // The button of viser's settings is hidden until these are shown; then it leads back.
@@ -52,6 +52,19 @@ function nameButton(button) {
   set(button, "aria-label", known ? ICON_NAMES[known] : "Close");
 }
 
+// A sentence on the canvas tells the state of the scene: what it shows, and the words of the panel on it.
+function describeScene() {
+  const canvas = document.querySelector("canvas[data-engine]"), status = document.querySelector(".springtide-panel[data-state]");
+  if (!canvas || !status) return;
+  const [scene, preset] = [...document.querySelectorAll(".springtide-head .mantine-Select-input")].map((one) => /** @type {HTMLInputElement} */ (one).value);
+  const isOld = document.documentElement.dataset.springtideLine !== undefined;
+  const state = isOld ? "No connection, an old picture" : status.textContent;
+  const figures = document.querySelector(".springtide-figures")?.textContent ?? "";
+  const words = [scene, preset, state, figures].filter(Boolean).map((text) => text.replace(/\s+/g, " ").trim());
+  set(canvas, "role", "img");
+  set(canvas, "aria-label", `${words.join(". ")}.`);
+}
+
 let planned = false;
 function describeAll() {
   planned = false;
@@ -85,3 +98,4 @@ page.listen(document, "keydown", (event) => {
 }, { capture: true });
 onControls(plan);
 onValues(plan);
+onLook(describeScene);

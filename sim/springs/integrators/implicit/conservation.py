@@ -102,11 +102,8 @@ def turned(turn, c, x, n, j):
 
 
 @kernel
-def conserve_momentum(x0, v0, g, p, x, v, r):
-    """Move the solution v of a stage, x = x0 + g v, as a rigid body, so that the momenta of a free net stay.
-
-    r: the residual, which changes with v.
-    """
+def conserve_momentum(x0, v0, g, p, x, v):
+    """Move the solution v of a stage, x = x0 + g v, as a rigid body, so that the momenta of a free net stay."""
     n = p.rows * p.cols
     u = np.empty_like(v)
     for e in range(3):
@@ -117,7 +114,6 @@ def conserve_momentum(x0, v0, g, p, x, v, r):
     for e in range(3):
         for j in range(n):
             v[e * n + j] += mean[e]
-            r[e * n + j] -= mass_at(p, j) * mean[e]
     if not p.conserves_spin:
         return
     for _ in range(TURNS):
@@ -130,7 +126,6 @@ def conserve_momentum(x0, v0, g, p, x, v, r):
             for e in range(3):
                 s = ux if e == 0 else uy if e == 1 else uz
                 v[e * n + j] += s
-                r[e * n + j] -= mass_at(p, j) * s
 
 
 @kernel

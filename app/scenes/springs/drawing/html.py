@@ -74,7 +74,7 @@ def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
 
 
 def accuracy_text(gauge: Gauge, colour: str) -> Html:
-    """Whether a stable step is right, in words; empty if it is unstable or not assessed."""
+    """Verdict on the accuracy of a stable step, in words; empty if it is unstable or not assessed."""
     if gauge.share > 1.0 or math.isnan(gauge.error):
         return Html("")
     if gauge.is_wrong:

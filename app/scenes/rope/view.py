@@ -18,11 +18,12 @@ from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import RopeParams
-from app.scenes.springs.drawing.html import colour_scale, held, simple_drawing, stability_bar, step_mark
+from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
 from app.scenes.springs.drawing.view import SecondNet, Sphere
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
+from app.scenes.springs.speed_advice import held
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)

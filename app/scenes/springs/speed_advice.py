@@ -1,5 +1,7 @@
 """Advice on the step of a spring network: faster ones, and those that are right."""
 
+import math
+
 from app.formats.formatting import longest_step, percent, time_step
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
@@ -35,7 +37,9 @@ def either(proposals: list[str]) -> str:
 def accurate_steps(gauge: Gauge) -> str:
     """A sentence for a step that is stable but not right: the method that is, and the step up to which its own is."""
     other = f"{method_name(gauge.accurate_method)} at this step" if gauge.accurate_method else ""
-    with_own = f"this method up to {longest_step(gauge.accurate_step)}" if gauge.accurate_step > 0.0 else ""
+    with_own = (
+        f"this method up to {longest_step(rounded_down(gauge.accurate_step))}" if gauge.accurate_step > 0.0 else ""
+    )
     right = [words for words in (other, with_own) if words]
     return f"Right: {either(right)}." if right else "No method is right at this step."
 
@@ -53,3 +57,16 @@ def step_warnings(integrator: Integrator, gauge: Gauge) -> list[str]:
         f"The time step of {time_step(gauge.step)} is stable with {method_name(integrator.name)} but not right: "
         f"oscillation and damping are {error_text(gauge.error)}. {accurate_steps(gauge)}"
     ]
+
+
+def rounded_down(step: float) -> float:
+    """A step [s] with two figures, as further ones change all the time in a moving net."""
+    return -1.0 / held(-1.0 / step)
+
+
+def held(limit: float) -> float:
+    """A limit with two figures, rounded down, as further ones change all the time in a moving net."""
+    if limit == 0.0 or math.isinf(limit):
+        return limit
+    unit = 10.0 ** (math.floor(math.log10(abs(limit))) - 1)
+    return math.floor(limit / unit + 1e-9) * unit

@@ -15,7 +15,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from sim.springs.analysis.amplification import Changes, exponents
@@ -122,8 +121,8 @@ def motion_of(
 ) -> Motion:
     """The motion that loads cause, of the modes within a space of shapes (Rayleigh and Ritz).
 
-    shapes: (m, size) vectors M^1/2 u; stiff, damped: (m, size) their products with K and D; loads: (3, size), of which
-    each counts alike. least: square of a frequency [1/s^2] that holds the softest modes, as a pendulum is held.
+    shapes: (m, size) vectors M^1/2 u; stiff, damped: (m, size) their products with K and D; loads: (3, size), which
+    count alike. least: square of a frequency [1/s^2] that holds the softest modes, as a pendulum is held.
     """
     weights, vectors = np.linalg.eigh(shapes @ shapes.T)
     independent = weights > DEPENDENT * weights[-1]
@@ -137,7 +136,9 @@ def motion_of(
     # rope, those of D.
     slow = math.sqrt(max(float(squares[0]), least, SPLIT * largest))
     share = SPLIT * max(largest, least) / max(float(np.trace(d)), SMALLEST)
-    _, modes = scipy.linalg.eigh(k + share * d, d + slow * np.eye(len(d)))
+    # The generalised problem as a plain one: with L L^T = D + slow M, that of L^-1 (K + share D) L^-T.
+    inverse = np.linalg.inv(np.linalg.cholesky(d + slow * np.eye(len(d))))
+    modes = inverse.T @ np.linalg.eigh(inverse @ (k + share * d) @ inverse.T)[1]
     modes /= np.linalg.norm(modes, axis=0)
     squares, rates = (np.einsum("im,ij,jm->m", modes, matrix, modes) for matrix in (k, d))
     pulled = (((loads @ shapes.T) @ change @ modes) ** 2).sum(axis=0)

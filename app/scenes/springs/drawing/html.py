@@ -17,7 +17,7 @@ from app.render.markup.html import (
 )
 from app.scenes.springs.divergence import limit_text
 from app.scenes.springs.recent_gauges import SPAN
-from app.scenes.springs.speed_advice import accurate_steps, error_text
+from app.scenes.springs.speed_advice import accurate_steps, error_text, rounded_down
 from sim.springs.stability import TOLERANCE, Gauge
 
 STEP_INFO = (
@@ -74,7 +74,7 @@ def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
 
 
 def accuracy_text(gauge: Gauge, colour: str) -> Html:
-    """Whether a stable step is right, in words; empty if it is unstable or not assessed."""
+    """Verdict on the accuracy of a stable step, in words; empty if it is unstable or not assessed."""
     if gauge.share > 1.0 or math.isnan(gauge.error):
         return Html("")
     if gauge.is_wrong:
@@ -99,19 +99,6 @@ def step_mark(critical_step: float, accurate_step: float = math.nan) -> str:
         return f"{limit}, right below it"
     right = f"up to {longest_step(rounded_down(accurate_step))}" if accurate_step > 0.0 else "at no step"
     return f"{limit}, right {right}"
-
-
-def rounded_down(step: float) -> float:
-    """A step [s] with two figures, as further ones change all the time in a moving net."""
-    return -1.0 / held(-1.0 / step)
-
-
-def held(limit: float) -> float:
-    """A limit with two figures, rounded down, as further ones change all the time in a moving net."""
-    if limit == 0.0 or math.isinf(limit):
-        return limit
-    unit = 10.0 ** (math.floor(math.log10(abs(limit))) - 1)
-    return math.floor(limit / unit + 1e-9) * unit
 
 
 def simple_drawing(quantity: str) -> Html:

@@ -19,10 +19,11 @@ from app.scenes.rope import SCENE
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
-from app.scenes.springs.drawing.html import held, stability_bar, step_mark
+from app.scenes.springs.drawing.html import stability_bar, step_mark
 from app.scenes.springs.drawing.ropes_view import bead_radius
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
+from app.scenes.springs.speed_advice import held
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record, parameters_of

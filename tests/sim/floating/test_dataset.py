@@ -189,7 +189,12 @@ def test_coefficients_that_are_not_finite_are_refused(tmp_path):
 
 
 def fresh(d):
-    return d.assign(rho=1000.0)
+    """What Capytaine gives in fresh water: all forces are in proportion to the density."""
+    names = ("added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force")
+    return d.assign({name: d[name] / 1.025 for name in names} | {"rho": 1000.0})
+
+
+SINGLE = 1e-6  # relative: the file has numbers of single precision
 
 
 def test_a_dataset_of_fresh_water_is_that_of_salt_water(tmp_path, depths):
@@ -200,17 +205,19 @@ def test_a_dataset_of_fresh_water_is_that_of_salt_water(tmp_path, depths):
     omega = [0.5, 1.0]
     given, other = linear_forces(body, omega), linear_forces(salt, omega)
     for name in ("mass", "stiffness", "added", "damping", "excitation"):
-        assert getattr(given, name) == pytest.approx(getattr(other, name), rel=1e-12, abs=1e-6), name
-    assert heave_period(*body.loaded()) == pytest.approx(heave_period(*salt.loaded()), rel=1e-12)
-    assert roll_period(*body.loaded()) == pytest.approx(roll_period(*salt.loaded()), rel=1e-12)
-    assert moored(1, body, 1.0).mass == pytest.approx(moored(1, salt, 1.0).mass, rel=1e-12)
-    assert make_fleet([body]).linear.added_bound == pytest.approx(make_fleet([salt]).linear.added_bound, rel=1e-12)
+        found, wanted = getattr(given, name), getattr(other, name)
+        assert np.abs(found - wanted).max() <= SINGLE * np.abs(wanted).max(), name
+    assert heave_period(*body.loaded()) == pytest.approx(heave_period(*salt.loaded()), rel=SINGLE)
+    assert roll_period(*body.loaded()) == pytest.approx(roll_period(*salt.loaded()), rel=SINGLE)
+    assert moored(1, body, 1.0).mass == pytest.approx(moored(1, salt, 1.0).mass, rel=SINGLE, abs=1.0)
+    assert make_fleet([body]).linear.added_bound == pytest.approx(make_fleet([salt]).linear.added_bound, rel=SINGLE)
     # In fresh water a body of the same draft has 2.5 % less of each.
     layers = ((1000.0, math.inf),)
     lighter = body._replace(mass=body.mass / 1.025, inertia=body.inertia / 1.025)
     found = linear_forces(lighter, omega, layers=layers)
     for name in ("added", "damping", "excitation"):
-        assert getattr(found, name) * 1.025 == pytest.approx(getattr(other, name), rel=1e-9, abs=1e-6), name
+        wanted = getattr(other, name)
+        assert np.abs(1.025 * getattr(found, name) - wanted).max() <= SINGLE * np.abs(wanted).max(), name
 
 
 def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():

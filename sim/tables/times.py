@@ -184,8 +184,8 @@ def of_numbers(words: Sequence[str], values: np.ndarray, factor: float | None, n
     digits = [-int(one.as_tuple().exponent) for one in exact if one is not None]
     resolution = factor * 10.0 ** -max(digits, default=0)
     is_far = form.startswith("an epoch") or (factor == DAY and abs(first) > 1e3)
-    if is_far and len(there) and NUMBER.fullmatch(words[there[0]]):
-        start = Decimal(words[there[0]])
+    if is_far and len(there) and NUMBER.fullmatch(words[int(there[0])]):
+        start = Decimal(words[int(there[0])])
         values = np.array(
             [float(Decimal(word) - start) if NUMBER.fullmatch(word) else math.nan for word in words], float
         )

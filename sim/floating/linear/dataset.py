@@ -198,7 +198,8 @@ def checked(
     """
     if not_finite(table):
         raise argument_error("path", path, f"a dataset of finite coefficients; {not_finite(table)} is not")
-    for text in doubts_of(omega, *matrices, forces, table, MOTIONS):
+    added, damping = matrices
+    for text in doubts_of(omega, added, damping, forces, table, MOTIONS):
         warnings.warn(f"{path}: {text.removeprefix(WARNING)}", UserWarning, stacklevel=4)
     return table
 

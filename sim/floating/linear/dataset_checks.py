@@ -82,7 +82,7 @@ def asymmetry(what: str, values: np.ndarray, omega: np.ndarray, motions: tuple[s
     n, i, j = (int(one) for one in np.unravel_index(int(apart.argmax()), apart.shape))
     said = f"{what} {values[n, i, j]:.3g} and {values[n, j, i]:.3g} with the motions exchanged: the difference"
     return beyond("dataset", "asymmetry", float(apart[n, i, j]),
-                  place(f"{motions[i]} and {motions[j].lower()}", omega[n]), said)  # fmt: skip
+                  place(f"{motions[i]} and {motions[j].lower()}", float(omega[n])), said)  # fmt: skip
 
 
 def doubts_of_damping(omega: np.ndarray, table: LinearTable, motions: tuple[str, ...]) -> list[str]:
@@ -107,7 +107,7 @@ def doubts_of_damping(omega: np.ndarray, table: LinearTable, motions: tuple[str,
         at = int(miss.argmax())
         said = f"damping {ratio[at]:.3g} times that which follows from the exciting force"
         texts = beyond("dataset", "damping over that of the exciting force", float(ratio[at]),
-                       place(motion, omega[main[at]]), said)  # fmt: skip
+                       place(motion, float(omega[int(main[at])])), said)  # fmt: skip
         wrong += [(float(miss[at]), text) for text in texts]
     more = f"; so in {len(wrong)} motions" if len(wrong) > 1 else ""
     return [max(wrong)[1] + more] if wrong else []

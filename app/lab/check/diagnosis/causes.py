@@ -489,7 +489,7 @@ def rolls(tree: Tree) -> Iterator[Candidate]:
             new.keywords = [*new.keywords, ast.keyword("axis", ast.Constant(0))]
             swaps.append((call, new))
     if swaps:
-        yield from together(swaps, "Without axis it runs along single numbers, not along points.")
+        yield from together(swaps, "This runs along single numbers, not along points: it needs an axis.")
 
 
 def missing_components(tree: Tree) -> Iterator[Candidate]:

@@ -452,7 +452,9 @@ def shared_arrays(tree: Tree) -> Iterator[Candidate]:
     """Two names of one array."""
     for node in tree.of(ast.Assign):
         if len(node.targets) > 1:
-            each = [ast.Assign([target], copy.deepcopy(node.value), lineno=node.lineno) for target in node.targets]
+            each: list[ast.stmt] = [
+                ast.Assign([target], copy.deepcopy(node.value), lineno=node.lineno) for target in node.targets
+            ]
             both = ast.If(ast.Constant(True), each, [])
             names = " and ".join(source_of(target) for target in node.targets)
             same = f"In line {node.lineno} {names} are names of one and the same array."

@@ -110,7 +110,8 @@ def reproduces(form: Any, found: Any, right: Any) -> bool:
         finite = np.isfinite(b)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
             return False
-        is_single = np.array_equal(b[finite].astype(np.float32), b[finite])
+        with np.errstate(over="ignore"):
+            is_single = np.array_equal(b[finite].astype(np.float32), b[finite])
         tolerance = SINGLE_TOLERANCE if is_single else FORM_TOLERANCE
         rounding = 1e-12 * np.abs(c[np.isfinite(c)]).max(initial=0.0)
         scale = tolerance * np.abs(b[finite]).max(initial=0.0) + rounding

@@ -277,6 +277,11 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     wrong = min((trial for trial in trials if not trial.is_right), key=lambda trial: size_of(trial.sample))
     compared = compared_parts(trials)
     if text := getattr(check, "contrast", lambda *_: "")(wrong.found, wrong.right, *wrong.sample):
+        try:
+            behave(student)
+        except Wrong as failed:
+            if failed.mistake and failed.mistake not in UNFIT:
+                return Explanation(failed.mistake, f"{failed} {text}")
         return Explanation("", text)
     if compared is None:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))

@@ -222,7 +222,9 @@ class Worker:
             elif kind == "edits":
                 *facts, arguments = arguments
                 with self.solved([module, *self.others(file)], function):
-                    value = self.try_edits(file, function, *facts, unpack(arguments, self.remote))
+                    which, names, conditions = facts
+                    given = unpack(arguments, self.remote)
+                    value = self.try_edits(file, function, which, names, conditions, given)
             elif kind == "called":
                 value, self.called = sorted(self.called), set()
             elif kind == "words":

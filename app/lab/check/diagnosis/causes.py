@@ -452,7 +452,9 @@ def shared_arrays(tree: Tree) -> Iterator[Candidate]:
     """Two names of one array."""
     for node in tree.of(ast.Assign):
         if len(node.targets) > 1:
-            each = [ast.Assign([target], copy.deepcopy(node.value), lineno=node.lineno) for target in node.targets]
+            each: list[ast.stmt] = [
+                ast.Assign([target], copy.deepcopy(node.value), lineno=node.lineno) for target in node.targets
+            ]
             both = ast.If(ast.Constant(True), each, [])
             names = " and ".join(source_of(target) for target in node.targets)
             same = f"In line {node.lineno} {names} are names of one and the same array."
@@ -489,7 +491,7 @@ def rolls(tree: Tree) -> Iterator[Candidate]:
             new.keywords = [*new.keywords, ast.keyword("axis", ast.Constant(0))]
             swaps.append((call, new))
     if swaps:
-        yield from together(swaps, "Without axis it runs along single numbers, not along points.")
+        yield from together(swaps, "This runs along single numbers, not along points: it needs an axis.")
 
 
 def missing_components(tree: Tree) -> Iterator[Candidate]:

@@ -213,10 +213,10 @@ def slips(tree: Tree, names: Sequence[str], conditions: Sequence[str]) -> Iterat
             yield from (candidate(node, change, OTHER if is_test else SHORTER) for change in shorter(node))
         yield from (candidate(node, change, OTHER) for change in changes_of(node, parent, tree.names))
     yield from other_orders(tree)
-    names = dict(zip(names, tree.arguments, strict=False))
+    own_names = dict(zip(names, tree.arguments, strict=False))
     for node in tree.of(ast.If, ast.IfExp):
         yield from (
-            Candidate(((node.test, renamed(text, names)),), OTHER, "The condition is another one.")
+            Candidate(((node.test, renamed(text, own_names)),), OTHER, "The condition is another one.")
             for text in conditions
         )
 
@@ -266,9 +266,7 @@ def changes_of(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterator
         if isinstance(node.op, ast.Pow) and isinstance(node.left, ast.Constant):
             yield lambda node: call_of("np.exp", node.right)
         if isinstance(node.op, ast.Mult):
-            yield (
-                lambda node: ast.parse(f"(({ast.unparse(node.left)}) + ({ast.unparse(node.right)})) / 2").body[0].value
-            )  # type: ignore[attr-defined]
+            yield lambda node: expression(f"(({ast.unparse(node.left)}) + ({ast.unparse(node.right)})) / 2")
     elif isinstance(node, ast.Compare) and len(node.ops) == 1:
         yield from (changed("ops", [other()]) for other in COMPARISONS.get(type(node.ops[0]), ()))
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):

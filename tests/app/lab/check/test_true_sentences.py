@@ -180,7 +180,8 @@ def test_no_mistake_of_a_first_year_is_called_right_and_each_repair_does_what_it
 @pytest.mark.parametrize(
     ("name", "words", "body"),
     [
-        ("spring_force", "whole numbers", "F = np.zeros(3, dtype=int)\nr = x2 - x1\nl = np.sqrt(r @ r)\nfor i in range(3):\n"
+        ("spring_force", "whole numbers", "F = np.zeros(3, dtype=int)\nr = x2 - x1\n"
+         "l = np.sqrt(r @ r)\nfor i in range(3):\n"
          "    F[i] = stiffness * (l - rest_length) * r[i] / l - damping * (v1[i] - v2[i])\nreturn F"),
         ("gravity", "Brackets are missing", "return 9.81 * mass_ratio ** 1 / 3"),
         ("dispersion", "Without np.tanh(k)|gravity * k in place of",
@@ -242,14 +243,15 @@ def test_a_right_function_waits_for_the_one_that_it_calls(tmp_path: Path, name: 
     assert "it calls spring_force, which is" in found.text
 
 
-@pytest.mark.parametrize("name", sorted(TASKS))
+@pytest.mark.parametrize("name", sorted(TASKS.keys() - {"cloth_links"}))  # which compares whole numbers in loops
 def test_each_comparison_of_a_reference_has_inputs_on_both_sides(name: str) -> None:
     task = TASKS[name]
     watched = Watched(task.function)
     notes = [watched.sides(sample) for sample in inputs_of(task.check, name)]
-    for number, text in enumerate(watched.texts):
-        sides = np.concatenate([note[number].ravel() for note in notes if number in note])
-        assert (sides < 0.0).any() and (sides > 0.0).any(), text
+    for i, text in enumerate(watched.texts):
+        sides = np.concatenate([note[i].ravel() for note in notes if i in note])
+        assert (sides < 0.0).any(), text
+        assert (sides > 0.0).any(), text
         size = np.median(np.abs(sides[sides != 0.0]))
         assert np.abs(sides).min() < 0.1 * size, text
 

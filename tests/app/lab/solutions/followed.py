@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 
 CHANGE = re.compile(
+    r"(?:^|(?<=\. )|(?<=, and ))"
     r"(?:[Ww]ith (?P<after>.+?) in place of (?P<before>.+?)|[Ww]ithout (?P<gone>.+?)) in line (?P<line>\d+)"
 )
 CONDITION = re.compile(r"It is right if the condition (.+) in line (\d+) (always|never) holds\.")
@@ -38,10 +39,8 @@ def followed(source: str, text: str) -> str:
         assert isinstance(line, ast.Assign)
         block[i : i + 1] = [ast.Assign([target], line.value, lineno=line.lineno) for target in line.targets]
     else:
-        said = text[text.index(next(CHANGE.finditer(text))[0]) :]
-        changes = list(CHANGE.finditer(said))
-        assert said.endswith("it is right."), text
-        for change in changes:
+        assert text.endswith("it is right."), text
+        for change in CHANGE.finditer(text):
             replace(tree, int(change["line"]), change["before"] or change["gone"], change["after"] or "")
     return ast.unparse(ast.fix_missing_locations(tree)) + "\n"
 

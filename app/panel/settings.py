@@ -215,7 +215,7 @@ class SceneSettings:
         """Show settings from the history, if there are any. act: of the present run."""
         if settings is None:
             return
-        self.pulling.clear()  # what is still held begins another drag
+        self.pulling.clear()  # a point that is still held begins another drag
         known = settings.preset in self.presets  # a set-up of the user may have been removed
         back = settings.act != act
         if settings.cameras:

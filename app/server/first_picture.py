@@ -1,4 +1,4 @@
-"""The first picture of a scene, for which its run waits: what happens in the first seconds is seen.
+"""The first picture of a scene: the run waits for it, so that its first seconds are seen.
 
 A page says that its picture is whole once its cover goes (`app/render/js/scene/cover.js`). Programs that connect draw
 nothing, and a lab that draws by viser's public interface alone gets no word of its pages: neither is waited for.
@@ -13,7 +13,7 @@ PATIENCE = 90.0  # [s] after the first page has connected; a page itself lifts i
 
 
 class FirstPicture:
-    """Whether somebody has seen the first picture of a scene."""
+    """The wait for the first picture of a scene."""
 
     def __init__(self, injector: ShaderInjector | None, pages: Collection[int]) -> None:
         """injector: hears of the pages' pictures; None without shaders. pages: clients that are pages of the lab."""

@@ -1,7 +1,7 @@
 """A beat on each connection to a browser, over the path that carries the pictures.
 
 A connection may end without being closed: a laptop sleeps, changes its network, or a router forgets it. The browser
-then waits for ever, and other requests of its page are answered. So the lab sends a beat at regular intervals, and a
+then waits without end, and other requests of its page are answered. So the lab sends a beat at regular intervals, and a
 page that hears nothing connects again (`app/render/js/page/line.js`). The lab in turn ends the earlier connection of a
 page that connects again.
 

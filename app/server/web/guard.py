@@ -122,7 +122,7 @@ def advice(origin: str) -> str:
         return ""
 
 
-class Refusals:
+class RefusedPages:
     """The pages that were refused, each reported once in the terminal."""
 
     def __init__(self) -> None:
@@ -158,7 +158,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
     serve = websockets.asyncio.server.serve
     started: list[str] = []
     ended: concurrent.futures.Future[None] = concurrent.futures.Future()
-    beats, refusals = Beats(), Refusals()
+    beats, refusals = Beats(), RefusedPages()
 
     def guarded_serve(
         handler: Callable[[ViserConnection], Awaitable[None]],

@@ -66,7 +66,7 @@ class RateLimit:
         self.probe_at = -math.inf  # [s] when the round trip is measured next
         self.last_pong = -math.inf  # [s] when it came
         self.is_quick = False  # True if it came within QUICK
-        self.announce: Callable[[int], Awaitable[None]] = nothing  # called before a picture of so many bytes
+        self.announce: Callable[[int], Awaitable[None]] = nothing  # called before a picture, with its bytes
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:

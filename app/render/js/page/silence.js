@@ -1,9 +1,9 @@
-// How long nothing has come over the connection to the lab, and what that means.
+// The silence of the connection to the lab: its length, and its meaning.
 //
 // Time counts only while the page itself has responded: a page that has compiled shaders for ten seconds finds the messages of
 // these seconds waiting, and its clock may look before it reads them.
 
-export const OLD_AFTER = 5000; // [ms] without a message, of which the lab sends one each 2 s: the picture is old
+export const OLD_AFTER = 5000; // [ms] without a message: the picture is old, as the lab sends a beat each 2 s
 const LOST_AFTER = 10_000; // [ms] the same, after which the connection is given up
 const WOKEN_LOST_AFTER = 3000; // [ms] the same for a page that was hidden or asleep
 const MAX_LOOK = 1000; // [ms] that count between two looks

@@ -13,7 +13,7 @@ const TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/w
 const RATE = 30; // [1/s] frames
 const BITS = 12e6; // [bit/s]
 const MAX_LENGTH = 300; // [s] after which a clip ends by itself
-const MAX_EMPTY = 10; // [s] after which a clip ends of which the browser has encoded nothing
+const MAX_EMPTY = 10; // [s] after which a clip ends if the browser has encoded nothing
 const TOLD = 3000; // [ms] for which the button says that a clip is saved
 const RECORD = "Record clip", NOTICE = "springtide-clips", CURE = "Save a replay instead, or use another browser.";
 /** @type {MediaRecorder | null} */

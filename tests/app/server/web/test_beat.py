@@ -18,7 +18,7 @@ from app.messages import Pause
 from app.render.handles import viser_inside
 from app.server.viewer import Viewer
 from app.server.web.beat import BEAT, BEAT_INTERVAL, LARGE, MAX_SILENCE, expected_silence
-from app.server.web.guard import MAX_REPORTED, Refusals, open_server
+from app.server.web.guard import MAX_REPORTED, RefusedPages, open_server
 from app.server.web.rate_limit import RateLimit
 from tests import coroutines
 from tests.app.server.web.test_transport import unpacked
@@ -159,7 +159,7 @@ def test_a_refused_page_reads_the_option_that_would_allow_it_and_so_does_the_ter
 
 
 def test_the_terminal_names_only_a_few_refused_addresses(capsys: pytest.CaptureFixture[str]) -> None:
-    refusals = Refusals()
+    refusals = RefusedPages()
     refusals.report("http://a.example/\x1b[31m")
     assert capsys.readouterr().err == ""
     for k in range(3 * MAX_REPORTED):

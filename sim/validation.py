@@ -24,7 +24,7 @@ Kind = TypeVar("Kind")
 
 
 class ApproximationWarning(UserWarning):
-    """The result is an approximation whose error nothing bounds; the message says which, and what would be right."""
+    """Warning of an approximation without a bound of its error; the message names it and the right way."""
 
 
 class ConvergenceError(RuntimeError):

@@ -32,7 +32,7 @@ class LineEnds(NamedTuple):
     links: NDArray[np.int64]  # (m,)
 
     def of(self, nodes: NDArray[np.int64], links: NDArray[np.int64]) -> "LineEnds":
-        """Those of these ends that are at nodes (n,) of links (n,), in this order."""
+        """The ends at nodes (n,) of links (n,), in this order."""
         known = {key: i for i, key in enumerate(zip(self.nodes.tolist(), self.links.tolist(), strict=True))}
         index = [known[key] for key in zip(nodes.tolist(), links.tolist(), strict=True)]
         return LineEnds(*(values[index] for values in self))

@@ -36,8 +36,9 @@ def moored(
         check_water_depth("waves", body.hull, waves.water.depth)
         if water is not None and not waves.water.is_same(water):
             raise argument_error("waves", f"waves on {waves.water}", f"those on the body's {water}")
-    depth = None if water is None and waves is None else (water or waves.water).depth
-    water = water or (Water() if waves is None else waves.water)
+    given = waves.water if water is None and waves is not None else water
+    depth = None if given is None else given.depth
+    water = given or Water()
     layers, gravity = ((water.density, math.inf),), water.gravity
     own = upright_body(body, layers, gravity, depth)
     C = own.stiffness.copy()

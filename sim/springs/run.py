@@ -1,14 +1,11 @@
 """`Run`: the record of a simulated net."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.analysis.energy_history import EnergyHistory
-
-if TYPE_CHECKING:
-    from sim.springs.state import State
 
 
 class Run(NamedTuple):
@@ -24,4 +21,4 @@ class Run(NamedTuple):
     integrator: str  # that ran: what "auto" took
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     unsettled: int = 0  # steps of implicit methods that were taken before Newton's method had settled
-    state: "State | None" = None  # at the end: `simulate` continues from it
+    state: Any = None  # `State` at the end, from which `simulate` continues

@@ -15,7 +15,7 @@ REPAIR_TOLERANCE = 1e-5  # the same, for what an edit makes right: a small part 
 FORM_TOLERANCE = 1e-9  # of the largest value of a student's result, within which a form agrees
 SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
-# What to do about results of some types.
+# Cures for results of some types.
 CURES = {
     "generator": ": write return in place of yield, or list(...) around the brackets",
     "map": ": write list(...) around map(...)",

@@ -67,7 +67,7 @@ def resized(function: Callable[..., Any], rng: np.random.Generator, drawn: Itera
         yield tuple(value if factor is None else value * factor for value, factor in zip(sample, sizes, strict=True))
 
 
-class Comparison(ast.NodeTransformer):
+class ComparisonNotes(ast.NodeTransformer):
     """Notes the difference of the two sides of each comparison of numbers in a function."""
 
     def __init__(self) -> None:
@@ -96,7 +96,7 @@ class Watched:
     """A reference solution whose comparisons are seen."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        transformer = Comparison()
+        transformer = ComparisonNotes()
         tree = transformer.visit(ast.parse(textwrap.dedent(inspect.getsource(function))))
         self.texts = transformer.texts
         self.notes: dict[int, np.ndarray] = {}

@@ -1,8 +1,8 @@
-"""Python's errors in words that say what to change."""
+"""Python's errors, in words that name the change to make."""
 
 import re
 
-# What Python says, and what is true of the code whenever it says so.
+# Messages of Python, and the fault of the code behind each.
 ERRORS = tuple(
     (re.compile(pattern), words)
     for pattern, words in (
@@ -54,7 +54,7 @@ INNER_NAME = re.compile(r"[\w.]+\.<locals>\.(\w+)|\b[A-Za-z]\w*\.__call__")
 
 
 def in_plain_words(text: str) -> str:
-    """An error's own text, and what is to be done, if that is known."""
+    """An error's own text, and the cure if it is known."""
     said = INNER_NAME.sub(lambda found: found[1] or "the function", text)
     cure = next((words for pattern, words in ERRORS if pattern.search(text)), "")
     return f"{said.rstrip('.')}. {cure}" if cure else said

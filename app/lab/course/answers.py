@@ -25,7 +25,7 @@ Value = str | float
 
 
 class Answers(NamedTuple):
-    """Contents of answers.toml. error: what could not be read of it, or "".
+    """Contents of answers.toml. error: its unreadable parts in words, or "".
 
     unread: the entries that could not be read, by task and question; all others are in `values`.
     """
@@ -58,7 +58,7 @@ class Answers(NamedTuple):
 
 
 def read_answers(folder: Path) -> Answers:
-    """The answers in a student's folder. Raises nothing: `error` says what could not be read."""
+    """The answers in a student's folder. Raises nothing: `error` names unreadable parts."""
     path = folder / FILE
     try:
         if path.stat().st_size > MAX_SIZE:

@@ -19,7 +19,7 @@ SHOWN = 60  # characters of a text that is repeated in a message
 
 
 class Unread(NamedTuple):
-    """An entry that could not be read. text: as it is in the file. cure: what to write."""
+    """An unreadable entry. text: as it is in the file. cure: text to write instead."""
 
     line: int
     text: str
@@ -48,7 +48,7 @@ def with_backslashes(text: str) -> str:
 
 
 def read_entries(text: str) -> tuple[dict[str, Any], dict[tuple[str, str], Unread], str]:
-    """The tables of a text that is no TOML, its entries that could not be read, and what else is wrong, or "".
+    """Tables of a text that is no TOML, its unreadable entries, and further faults in words, or "".
 
     The key of an entry above all headings has the task "".
     """
@@ -102,7 +102,7 @@ def is_toml(text: str) -> bool:
 
 
 def cure_of(text: str) -> str:
-    """What to write in place of a value that could not be read."""
+    """Text to write in place of an unreadable value."""
     if not text:
         return 'write "" if there is no answer yet'
     if "\n" in text:

@@ -258,7 +258,7 @@ class Functions:
     def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
         """Add floor, sphere, the pull of the mouse and the forces that the net declares, on all points but the root."""
         f, first = self.forces, self.roots
-        pressed: list[tuple[int, np.ndarray, np.ndarray, bool]] = []  # points in contact
+        pressed: list[tuple[int | np.intp, np.ndarray, np.ndarray, bool]] = []  # points in contact
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
             force = self.contact(x[i], v[i], on_sphere=False)
             pressed.append((i, force, v[i], False))

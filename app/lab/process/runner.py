@@ -31,7 +31,7 @@ from app.lab.process.child_processes import end_with_this_program, kill_with_chi
 from app.lab.process.cloth_march import FILE as CLOTH_FILE
 from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.process.rope_march import MarchResult, Segment, packed
-from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL, Place, place_in
+from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL, CodePlace, place_in
 from app.lab.process.tabulate import Interval
 from app.lab.process.template import Forked, Template, can_fork
 from app.lab.process.wire import Foreign, pack, receive, send, unpack
@@ -104,7 +104,7 @@ class Runner:
         self._process: Process | None = None
         self._aborted = False
         self._trace: IO[bytes] | None = None  # file in which the process reports its place on request
-        self._place: Place | None = None  # reported unasked
+        self._place: CodePlace | None = None  # reported unasked
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
 
     def __enter__(self) -> "Runner":
@@ -270,7 +270,7 @@ class Runner:
                     continue
                 if answer[0] == "at":
                     _, where, line, inner, work, used = answer
-                    self._place = Place(str(where), int(line), str(inner), str(work)) if line else None
+                    self._place = CodePlace(str(where), int(line), str(inner), str(work)) if line else None
                     limit.note(float(used))
                     continue
                 if answer[0] == "failed":
@@ -354,7 +354,7 @@ class Runner:
         end_with_this_program(process, background=self.compiles)
         return process
 
-    def _where(self) -> Place | None:
+    def _where(self) -> CodePlace | None:
         """The place in the student's code that the process is running; None if unknown."""
         if self._process is None or self._trace is None or TRACE_SIGNAL is None:
             return self._place
@@ -375,7 +375,7 @@ class Runner:
 
         Raises LostError if it has ended with its template.
         """
-        early: Place | None = None  # half way to the limit
+        early: CodePlace | None = None  # half way to the limit
         while True:
             state = limit.look()
             if state == COMPUTING:
@@ -389,7 +389,7 @@ class Runner:
             if state == ENDLESS and place is not None and place.work and limit.extend():
                 continue
             self.close()
-            where, line, inner, work = place or Place(file, None, file if loading else function)
+            where, line, inner, work = place or CodePlace(file, None, file if loading else function)
             inner = where if inner == "<module>" else inner
             if state == BUSY_MACHINE:
                 text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
@@ -419,7 +419,7 @@ class Runner:
         return answer
 
 
-def traced(process: Process, trace: IO[bytes], folder: Path) -> Place | None:
+def traced(process: Process, trace: IO[bytes], folder: Path) -> CodePlace | None:
     """The place in a folder at which a process is, as it writes it when it gets `TRACE_SIGNAL`."""
     assert TRACE_SIGNAL is not None
     before = os.fstat(trace.fileno()).st_size
@@ -435,7 +435,7 @@ def traced(process: Process, trace: IO[bytes], folder: Path) -> Place | None:
     return None
 
 
-def repeats(folder: Path, early: Place | None, late: Place) -> bool:
+def repeats(folder: Path, early: CodePlace | None, late: CodePlace) -> bool:
     """True if two places of one call lie in the same loop, or in a function that calls itself."""
     if early is None or early.file != late.file or late.line is None or early.line is None:
         return False

@@ -52,7 +52,7 @@ from app.lab.process.shared import (
     FORKS,
     ROPE_NICENESS,
     TRACE_SIGNAL,
-    Place,
+    CodePlace,
     lower_priority,
     place_in,
 )
@@ -186,7 +186,7 @@ class Worker:
             place = place_in(self.folder, [(f.f_code.co_filename, line, f.f_code.co_name) for f, line in frames])
             with self.sending, contextlib.suppress(OSError):  # the lab has ended
                 if self.in_call.is_set():  # no place is sent after the result
-                    send(self.outgoing, ["at", *(place or Place("", 0, "")), time.process_time() - self.began])
+                    send(self.outgoing, ["at", *(place or CodePlace("", 0, "")), time.process_time() - self.began])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""

@@ -90,7 +90,7 @@ def foresee(x, v, t, p):
 
 @kernel(allocates=False)
 def hold_on(x, v, t, s, p, on_sphere, foreseen):
-    """Friction for a time s, last in a kick: what it can stop stands still. Returns the sphere's work [J].
+    """Friction for a time s, last in a kick, which stops points that it can stop. Returns the sphere's work [J].
 
     foreseen: of other points, the friction that `foresee` has set, for a kick that mirrors one without.
     """

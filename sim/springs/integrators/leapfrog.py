@@ -28,7 +28,7 @@ def stable_step(omega: float, rate: float) -> float:
 
 
 def changes(omega: NDArray[np.float64], rate: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Of kick, drift and kick, with z = h omega and y = h rate/2.
+    """Eigenvalues of a step of kick, drift and kick, less 1, with z = h omega and y = h rate/2.
 
     Damping that is taken apart keeps exp(-y) of v, and its kick is h/2. Inside the kick it keeps R(y), and the kick is
     (1 - R)/rate (`sim.springs.kicks.formula`). Of a net the strongest rate decides between them; by Gershgorin's bound

@@ -21,7 +21,7 @@ def stable_step(omega: float, rate: float) -> float:
 
 
 def changes(omega: NDArray[np.float64], rate: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Of the step matrix [[1 - z^2, h (1 - h rate)], [-h omega^2, 1 - h rate]], z = h omega."""
+    """Eigenvalues, less 1, of the step [[1 - z^2, h (1 - h rate)], [-h omega^2, 1 - h rate]], z = h omega."""
     square = (h * omega) ** 2
     return changes_of_matrix(-h * rate - square, square)
 

@@ -15,7 +15,7 @@ body, and the rates r = G u at which links grow, f = b r and
   (1/b + tau G E^-1 G^T) f = G E^-1 (M w + tau F).
 
 Drag is c (water's velocity - u) with c = D |water's velocity - u|, by Newton's method in log c: stiff drag has c u
-constant, where c alone would swing for ever. A link that only pulls takes f = -tension where b r would be less.
+constant, where c alone would never come to rest. A link that only pulls takes f = -tension where b r would be less.
 
 Links turn while the step drifts. A stiff damper would resist a rate that is not there, so each stage has the directions
 of its own time, by the velocities of the drift, and the velocities of moved nodes of that time. The kick before a drift
@@ -92,7 +92,7 @@ def make_lines_system(p):
 
 @kernel(noalias=True, allocates=False)
 def open_kick(x, v, t, p, room):
-    """Set what stays through a kick: water, tangents, bed and links at the positions x. True if anything damps."""
+    """Set the constants of a kick: water, tangents, bed and links at the positions x. True if anything damps."""
     n = p.cols
     for j in range(n):
         room.upright[j] = 0.0
@@ -247,7 +247,7 @@ def pull_ends(p, room, q, impulse):
 
 @kernel(noalias=True, allocates=False)
 def set_pushed(v, y, p, room):
-    """v = y and what the impulses change."""
+    """Set v to y and the changes by the impulses."""
     n, g, w = p.cols, room.pushes, room.scratch
     for j in range(3 * n):
         w[j] = g[j]
@@ -409,7 +409,7 @@ def kick_lines(x, v, a, t, s, p, begins, room):
 
 @kernel(noalias=True, allocates=False)
 def kick_lines_with_account(x, v, a, t, s, p, begins, room, before, ledger):
-    """`kick_lines`, and book what its damping took: what is missing of the work of a at the mean velocity.
+    """`kick_lines`, and book the energy that its damping took: the work of a at the mean velocity, less the gain.
 
     before: scratch (3 n,).
     """

@@ -57,7 +57,7 @@ PLAIN_NUMBERS = (0.5, 1, 2, 3, 4, 6)  # factors of laws
 
 
 def traps(tree: Tree) -> Iterator[Candidate]:
-    """Edits of what Python does in another way than mathematics."""
+    """Edits of code that Python reads in another way than mathematics."""
     for find in (carets, floor_divisions, whole_numbers, repeated_lists, coarse_numbers):
         yield from find(tree)
 
@@ -100,7 +100,7 @@ def together(swaps: Iterable[Swap], cause: str) -> Iterator[Candidate]:
 # ----- brackets
 
 
-class Chain:
+class OperandChain:
     """Operands and operators of an expression in the order of the text; an operand in brackets is one."""
 
     def __init__(self, node: ast.BinOp) -> None:
@@ -146,11 +146,11 @@ class Chain:
 
 def brackets(tree: Tree) -> Iterator[Candidate]:
     """Every other bracketing of the operations, also in all expressions of the same form."""
-    chains: list[Chain] = []
+    chains: list[OperandChain] = []
     inner: list[ast.BinOp] = []
     for node in tree.of(ast.BinOp):  # outer ones first
         if node not in inner:
-            chain = Chain(node)
+            chain = OperandChain(node)
             inner += chain.inner
             if all(sign in SIGNS for sign in chain.signs):
                 chains.append(chain)
@@ -171,12 +171,12 @@ def brackets(tree: Tree) -> Iterator[Candidate]:
 def missing_stars(tree: Tree) -> Iterator[Candidate]:
     """a * 2 for a ** 2."""
     for node in tree.of(ast.BinOp):
-        chain = Chain(node)
+        chain = OperandChain(node)
         if isinstance(tree.parent(node), ast.BinOp) or not all(sign in SIGNS for sign in chain.signs):
             continue
         for i, sign in enumerate(chain.signs):
             if sign is ast.Mult and is_number(chain.operands[i + 1]):
-                other = Chain(node)
+                other = OperandChain(node)
                 other.signs[i] = ast.Pow
                 yield Candidate(((node, expression(other.text())),), CAUSE, "A power is written with two stars.")
 
@@ -198,7 +198,7 @@ def powers_of_products(tree: Tree) -> Iterator[Candidate]:
 def roots_and_squares(tree: Tree) -> Iterator[Candidate]:
     """A root or a square around a part of a product or sum."""
     for node in tree.of(ast.BinOp):
-        chain = Chain(node)
+        chain = OperandChain(node)
         count = len(chain.operands)
         if isinstance(tree.parent(node), ast.BinOp) or not all(sign in SIGNS for sign in chain.signs):
             continue
@@ -241,7 +241,7 @@ def moved_brackets(tree: Tree) -> Iterator[Candidate]:
 
 def chain_splits(node: ast.BinOp) -> Iterator[tuple[ast.expr, ast.operator, ast.expr]]:
     """The two parts of an operation, cut at each of its operators in the order of the text."""
-    chain = Chain(node)
+    chain = OperandChain(node)
     pieces = [f"({ast.unparse(operand)})" for operand in chain.operands]
     for cut in range(1, len(pieces)):
 

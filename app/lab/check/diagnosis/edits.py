@@ -60,7 +60,7 @@ class Shown(NamedTuple):
     line: int
 
 
-class Words(NamedTuple):
+class EditWords(NamedTuple):
     """An edit in words. rank: sort key, likelier edits first."""
 
     rank: tuple[int, int, int]
@@ -160,7 +160,7 @@ class Tree:
         with self.changed(candidate.swaps):
             return clashes(self.definition, units)
 
-    def words(self, candidate: Candidate) -> Words:
+    def words(self, candidate: Candidate) -> EditWords:
         """A candidate in words."""
         owners = [self.shown_node(node) for node, _ in candidate.swaps]
         before = [source_of(owner) for owner in owners]
@@ -173,7 +173,7 @@ class Tree:
             for owner, text, new in zip(owners, before, after, strict=True) if owner not in inner
         ))  # fmt: skip
         length = sum(abs(len(one.after) - len(one.before)) for one in shown)
-        return Words((candidate.kind, len(shown), length), candidate.cause, candidate.condition, shown)
+        return EditWords((candidate.kind, len(shown), length), candidate.cause, candidate.condition, shown)
 
     def shown_node(self, node: ast.AST) -> ast.AST:
         """The expression or statement that shows a replacement: long enough, and the only such one in its line."""

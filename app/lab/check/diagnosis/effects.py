@@ -246,7 +246,7 @@ def is_own(kind: type, folder: str) -> bool:
 
 
 def is_plain(value: Any) -> bool:
-    """True for numbers, texts, arrays, and lists and tuples of them: what two calls can be compared by."""
+    """True for numbers, texts, arrays, and lists and tuples of them, by which two calls can be compared."""
     if isinstance(value, list | tuple):
         return all(map(is_plain, value))
     return value is None or isinstance(value, int | float | complex | str | np.ndarray | np.generic)

@@ -1,4 +1,4 @@
-"""What the solver's error must not change: the momentum of a free net, and the energy of a midpoint step.
+"""Conservation in spite of the solver's error: momentum of a free net, energy of a midpoint step.
 
 Links pull with equal and opposite forces, so the exact solution of a stage keeps the momentum of a net on which nothing
 else acts, and its angular momentum about the positions of the stage if its forces point along the links. An approximate
@@ -13,7 +13,7 @@ from sim.jit import kernel
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.points.arrays import by_net, mass_at
 
-TURNS = 3  # repeated turns of a rigid body, each of which leaves about g |a| / |x| of what is missing
+TURNS = 3  # repeated turns of a rigid body; each leaves about g |a| / |x| of the error
 FLAT = 1e-12  # of the trace of the tensor of inertia, added to it: points on a line do not resist a turn about it
 
 

@@ -58,7 +58,7 @@ NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
 FEW = 12  # corrections of a net, after which new factors are quicker than more of them
 
 
-class Limits(NamedTuple):
+class StageLimits(NamedTuple):
     """Limits of a method's stages."""
 
     order: int
@@ -72,14 +72,14 @@ class Limits(NamedTuple):
 
 # Implicit Euler damps errors most, TR-BDF2 less; the energy of a chain's midpoint shows each. Halves of a midpoint are
 # quicker than more corrections.
-OF_EULER = Limits(1, 1 / 2, 1.0, 1e-3, 24, 25, 16)
-OF_MIDPOINT = Limits(2, 1 / 6, 0.1, 0.0, 36, 12, 64)
+OF_EULER = StageLimits(1, 1 / 2, 1.0, 1e-3, 24, 25, 16)
+OF_MIDPOINT = StageLimits(2, 1 / 6, 0.1, 0.0, 36, 12, 64)
 # Without isotropic damping nothing takes away what an unsettled midpoint adds to the motion.
-OF_CONSERVING_MIDPOINT = Limits(2, 1 / 6, 0.0, 0.0, 60, 12, 64)
-OF_TR_BDF2 = Limits(2, 1 / 7, 1e-3, 1e-3, 60, 25, 16)
+OF_CONSERVING_MIDPOINT = StageLimits(2, 1 / 6, 0.0, 0.0, 60, 12, 64)
+OF_TR_BDF2 = StageLimits(2, 1 / 7, 1e-3, 1e-3, 60, 25, 16)
 
 
-class Work(NamedTuple):
+class SolverWork(NamedTuple):
     """Arrays of the solver."""
 
     mean: bool  # links take the tension of their mean length
@@ -96,7 +96,7 @@ class Work(NamedTuple):
 def make_work(p, mean):
     size = p.rows * p.cols
     solver = make_solver(p, mean)
-    return Work(
+    return SolverWork(
         mean,
         np.zeros(3 * size),
         make_scratch(p),
@@ -258,16 +258,29 @@ most_of = by_net(
 is_judged = by_net(rope=kernel(lambda p: False, inline=True), grid=kernel(lambda p: True, inline=True))
 
 
+@kernel(noalias=True, inline=True)
+def set_second_start(x, v, xs, vs, x1, v1, x0, v0):
+    """Keep the first stage of TR-BDF2 as x1, v1, and set x0, v0 of the second."""
+    for j in range(x.shape[0]):
+        x1[j], v1[j] = xs[j], vs[j]
+        x0[j] = C1 * xs[j] + C0 * x[j]
+        v0[j] = C1 * vs[j] + C0 * v[j]
+
+
+@kernel(noalias=True, inline=True)
+def set_stage_start(x, v, a, g, x0, v0, vs):
+    """x0 = x + g v, v0 = v + g a, and the guess vs = v."""
+    for j in range(x.shape[0]):
+        x0[j], v0[j], vs[j] = x[j] + g * v[j], v[j] + g * a[j], v[j]
+
+
 @kernel
 def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
     """`advance` of an integrator, by the method EULER, MIDPOINT or TR_BDF2."""
     limits = OF_EULER if method == EULER else OF_TR_BDF2
     if method == MIDPOINT:
         limits = OF_CONSERVING_MIDPOINT if p.axial or not p.damped else OF_MIDPOINT
-    finest = limits.finest
-    work = make_work(p, method == MIDPOINT)
-    f = make_scratch(p)
-    a = np.zeros_like(x)
+    finest, work, f, a = limits.finest, make_work(p, method == MIDPOINT), make_scratch(p), np.zeros_like(x)
     x0, v0, x1, v1 = np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x)
     xs, vs = np.empty_like(x), np.empty_like(x)
     evals = 0
@@ -283,7 +296,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
             after = t + (s + (done + size) / finest) * h
             set_pins(x, v, now, p)
             if method == TR_BDF2 or is_judged(p) or p.held.shape[0] > 0:
-                p.load_is[0] = NOTED  # what friction holds against in this step
+                p.load_is[0] = NOTED  # the forces of this step, which friction holds against
                 accelerate(x, v, now, p, True, f, a)
                 p.load_is[0] = FIXED
                 evals += 1
@@ -294,12 +307,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
             elif method == TR_BDF2:
                 # y1 = y + g (f + f1)
                 g, then = 0.5 * GAMMA * part, now + GAMMA * part
-            for j in range(x.shape[0]):
-                x0[j], v0[j], vs[j] = x[j], v[j], v[j]
-            if method == TR_BDF2:
-                for j in range(x.shape[0]):
-                    x0[j] += g * v[j]
-                    v0[j] += g * a[j]
+            set_stage_start(x, v, a, g if method == TR_BDF2 else 0.0, x0, v0, vs)
             hardest, stage, last, part_settled = 0, 0, 1 if method == TR_BDF2 else 0, True
             while True:
                 # A net that falls freely is solved by this first guess.
@@ -320,10 +328,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                 if stage == last or not (usable or size == 1):
                     break
                 stage, then = 1, after
-                for j in range(x.shape[0]):
-                    x1[j], v1[j] = xs[j], vs[j]
-                    x0[j] = C1 * x1[j] + C0 * x[j]
-                    v0[j] = C1 * v1[j] + C0 * v[j]
+                set_second_start(x, v, xs, vs, x1, v1, x0, v0)
             scale = 1.0
             if method == MIDPOINT:
                 for j in range(x.shape[0]):

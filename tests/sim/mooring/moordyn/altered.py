@@ -141,7 +141,12 @@ def by_moordyn(text: str, folder: Path) -> list[float] | None:
     path.write_bytes(text.encode("utf-8"))
     try:
         ran = subprocess.run(
-            [sys.executable, "-c", RUN, str(path)], capture_output=True, text=True, cwd=folder, timeout=30, check=False
+            [sys.executable, "-c", RUN, str(path)],
+            capture_output=True,
+            encoding="utf-8",
+            cwd=folder,
+            timeout=30,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return None

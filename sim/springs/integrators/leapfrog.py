@@ -23,7 +23,7 @@ from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
 
 
 def stable_step(omega: float, rate: float) -> float:
-    """2/omega at every damping rate: damping only lowers the invariant of the undamped step."""
+    """2/omega, a bound at every damping rate: damping only lowers the invariant of the undamped step."""
     return 2.0 / omega if omega > 0.0 else math.inf
 
 

@@ -240,7 +240,8 @@ def test_integrators_hold_just_below_their_limit_and_fail_just_above(name, zeta)
     limit = INTEGRATORS[name].limit(zeta)
     if limit > 0.0:
         assert growth(name, zeta, 0.99 * limit) < 100.0
-    assert not growth(name, zeta, 1.01 * limit if limit else 0.05) < 1000.0
+    if name != "leapfrog" or zeta == 0.0:  # with damping its limit is a bound
+        assert not growth(name, zeta, 1.01 * limit if limit else 0.05) < 1000.0
 
 
 @pytest.mark.parametrize("name", DAMPABLE)

@@ -63,7 +63,8 @@ def test_the_map_turns_at_the_critical_step(units: str):
         net = build(dataclasses.replace(params, **{shown.axes.parameter: float(stiffness)}))
         assert row.critical == pytest.approx(critical_step(net, "leapfrog"), rel=0.05)
         holds = shown.axes.steps < row.critical
-        np.testing.assert_array_equal(row.outcomes == STABLE, holds)
+        assert (row.outcomes == STABLE)[holds].all()  # with damping leapfrog's critical step is a bound
+        assert (row.outcomes != STABLE)[shown.axes.steps > 1.5 * row.critical].all()
     assert shown.rows[-1].outcomes[-1] == EXPLODING
     assert "measuring" not in shown.html.content
     # The step and the stiffness that are set, at their places on the axes.

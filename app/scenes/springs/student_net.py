@@ -150,6 +150,7 @@ def forces_of(net: Net, start: float) -> Forces:
     """Material and surroundings of a net at a time [s]."""
     p, link = net.kernel_view(1.0), net.families[0]
     given = {name: getattr(p, name) for name in p._fields if name in Forces._fields}
+    given |= {"mass": float(net.mass)}  # of each point: a student's net has equal masses
     given |= {"stiffness": link.stiffness, "damping": link.damping, "rest_length": link.rest, "gravity": -p.gz}
     if not p.has_floor:
         given["floor"] = -math.inf

@@ -118,7 +118,7 @@ def test_a_class_makes_one_table_and_one_page(empty: Path, finished: Path, tmp_p
     write_answers(empty, TASKS, answers._replace(name="=HYPERLINK(1)"))
     table, page = tmp_path / "class.csv", tmp_path / "class.html"
     assert main(["lab", "check", str(empty), str(finished), "--csv", str(table), "--report", str(page)]) == 1
-    rows = list(csv.DictReader(table.open(encoding="utf-8")))
+    rows = list(csv.DictReader(table.open(encoding="utf-8-sig")))
     assert [row["folder"] for row in rows] == ["bo", "anna"]
     assert rows[0]["name"] == "'=HYPERLINK(1)"
     assert (rows[0]["complete"], rows[1]["complete"]) == ("no", "yes")
@@ -161,7 +161,7 @@ def test_folders_of_one_name_are_told_apart(tmp_path: Path, capsys) -> None:
     table, page = tmp_path / "c.csv", tmp_path / "r.html"
     main(["lab", "check", *map(str, folders), "--csv", str(table), "--report", str(page)])
     shown = capsys.readouterr().out
-    assert [row[0] for row in csv.reader(table.read_text("utf-8").splitlines())][1:] == ["a/lab", "b/lab"]
+    assert [row[0] for row in csv.reader(table.read_text("utf-8-sig").splitlines())][1:] == ["a/lab", "b/lab"]
     assert "a/lab" in shown
     assert "b/lab" in shown
     assert "folder b/lab" in page.read_text("utf-8")

@@ -294,8 +294,9 @@ class Comparisons:
     def stop_opening(self) -> None:
         """Give up a comparison that waits to be compiled, as the first lab ends."""
         for labs in (self.opening, self.first.comparison):
-            for viewer in labs.viewers[1:] if labs is not None else ():
-                viewer.stop_opening()
+            if labs is not None and labs.first is self.first:
+                for viewer in labs.viewers[1:]:
+                    viewer.stop_opening()
 
     def try_to(self, action: Callable[[], None]) -> None:
         """Run the action; show its error on every page."""

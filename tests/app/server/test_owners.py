@@ -2,7 +2,6 @@
 
 import gc
 import threading
-import tracemalloc
 from collections.abc import Callable
 
 import psutil
@@ -19,7 +18,6 @@ from app.server.viewer import Viewer
 from tests.waiting import wait_for
 
 OWNED = (Viewer, viser.ViserServer, ServedScene, SimLoop, Recorder, ComparedLabs, ShaderInjector)
-BYTES = 1_000_000  # by which a program may grow between two rounds: interned strings, caches of types
 
 
 def counted() -> dict[str, int]:
@@ -67,19 +65,9 @@ def viewer():
 
 @pytest.mark.parametrize("act", [compare, change_scene, make_lab])
 def test_what_has_ended_is_gone(viewer: Viewer, act: Callable[[Viewer], None]) -> None:
-    """As much is alive after the fourth time as after the first, and as many bytes within 1 MB."""
+    """As much is alive after the fourth time as after the first."""
     act(viewer)
     before = counted()
-    tracemalloc.start()
-    try:
+    for _ in range(3):
         act(viewer)
-        wait_for(lambda: has_at_most(before))
-        first, _ = tracemalloc.get_traced_memory()
-        act(viewer)
-        act(viewer)
-        wait_for(lambda: has_at_most(before))
-        gc.collect()
-        last, _ = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
-    assert last < first + BYTES
+    wait_for(lambda: has_at_most(before))

@@ -189,7 +189,7 @@ def test_coefficients_that_are_not_finite_are_refused(tmp_path):
 
 
 def fresh(d):
-    """What Capytaine gives in fresh water: all forces are in proportion to the density."""
+    """Forces by Capytaine in fresh water, in proportion to the density."""
     names = ("added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force")
     return d.assign({name: d[name] / 1.025 for name in names} | {"rho": 1000.0})
 

@@ -6,7 +6,6 @@ import re
 import threading
 from typing import Any
 
-import numpy as np
 import pytest
 
 from app.panel.controls import stability_map as live

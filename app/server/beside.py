@@ -60,8 +60,8 @@ class PaneLab(Protocol):
         """True if the lab has ended, or another scene was requested after the request `asked`."""
         ...
 
-    def visitors(self) -> int:
-        """The number of connected browsers."""
+    def visitors(self) -> list[int]:
+        """Identifiers of the connected browsers."""
         ...
 
     def call(self, action: Callable[[], None]) -> None:
@@ -216,7 +216,7 @@ class ComparedLabs:
 
     def audience(self) -> int:
         """Number of browsers that see all panes: the clock stands still until all panes are connected."""
-        return min(viewer.visitors() for viewer in self.viewers)
+        return min(len(viewer.visitors()) for viewer in self.viewers)
 
     def words(self) -> tuple[PaneWords, ...]:
         """Titles of the panes on the page."""
@@ -225,7 +225,7 @@ class ComparedLabs:
             return tuple(PaneWords("", (0.0, 0.0), connected=True) for _ in self.viewers)
         panes = [(viewer.settings.kind, viewer.settings.params) for viewer in viewers]
         middles = [middle_of(kind.name, params) for kind, params in panes]
-        connected = [viewer.visitors() > 0 for viewer in viewers]
+        connected = [bool(viewer.visitors()) for viewer in viewers]
         return tuple(PaneWords(*pane) for pane in zip(headings(panes), middles, connected, strict=True))
 
     def end(self) -> None:

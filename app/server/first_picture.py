@@ -5,7 +5,7 @@ nothing, and a lab that draws by viser's public interface alone gets no word of 
 """
 
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
 
 from app.render.injection import ShaderInjector
 
@@ -21,13 +21,13 @@ class FirstPicture:
         self.is_seen = injector is None
         self.since: float | None = None  # [s] when the first page was there
 
-    def audience(self, clients: Iterable[int], count: int, clock: Callable[[], float] = time.monotonic) -> int:
+    def audience(self, clients: Collection[int], count: int, clock: Callable[[], float] = time.monotonic) -> int:
         """The number of those who watch: `count`, or 0 while all of these clients wait for their first picture."""
         if self.is_seen or count == 0:
             return count
         assert self.injector is not None
-        now, known = clock(), list(clients)
+        now = clock()
         self.since = now if self.since is None else self.since
-        is_whole = not self.injector.whole.isdisjoint(known)
-        self.is_seen = is_whole or any(one not in self.pages for one in known) or now - self.since > PATIENCE
+        is_whole = not self.injector.whole.isdisjoint(clients)
+        self.is_seen = is_whole or any(one not in self.pages for one in clients) or now - self.since > PATIENCE
         return count if self.is_seen else 0

@@ -63,8 +63,12 @@ class SceneHost(Protocol):
         """Request a scene."""
         ...
 
+    def visitors(self) -> list[int]:
+        """Identifiers of the connected browsers."""
+        ...
+
     def audience(self) -> int:
-        """The number of watching browsers."""
+        """The number of watching browsers, of all labs if several are side by side."""
         ...
 
     def share_parameters(self, params: BaseParams) -> None:
@@ -119,7 +123,7 @@ class ServedScene:
 
     def audience(self) -> int:
         """The number of watching browsers, 0 until the first of them has a whole picture."""
-        return self.first_picture.audience(self.server.get_clients(), self.viewer.audience())
+        return self.first_picture.audience(self.viewer.visitors(), self.viewer.audience())
 
     def start(self) -> None:
         """Run the threads."""

@@ -262,9 +262,9 @@ class Viewer:
         """The queue of commands for its simulation."""
         return self.served.commands
 
-    def visitors(self) -> int:
-        """Number of connected browsers."""
-        return len(self.server.get_clients())
+    def visitors(self) -> list[int]:
+        """Identifiers of the connected browsers."""
+        return list(self.server.get_clients())
 
     def newest_visitor(self, timeout: float) -> viser.ClientHandle | None:
         """The browser that connected last; waits at most `timeout` [s] for one, unless the lab has ended."""
@@ -275,7 +275,7 @@ class Viewer:
     def audience(self) -> int:
         """Number of watching browsers, of all labs if several are side by side."""
         comparison = self.comparison
-        return self.visitors() if comparison is None else comparison.audience()
+        return len(self.visitors()) if comparison is None else comparison.audience()
 
     def make_pane(self, number: int) -> "Viewer":
         """A lab beside this one, with nothing open. number: of its pane, from 2."""

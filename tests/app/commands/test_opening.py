@@ -138,7 +138,7 @@ def test_a_browser_that_was_there_before_the_lab_is_counted(
             try:
                 assert viewer.port == port
                 assert await asyncio.to_thread(viewer.came.wait, 10.0)
-                assert viewer.visitors() == 1
+                assert len(viewer.visitors()) == 1
             finally:
                 await asyncio.to_thread(viewer.shut)
 

@@ -125,7 +125,7 @@ def test_every_button_of_every_tab_is_pressed(
     name: str, students_lab: Viewer, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     viewer = students_lab
-    viewer.visitors = lambda: 1  # type: ignore[method-assign]
+    viewer.visitors = lambda: [1]  # type: ignore[method-assign]
     viewer.open(name)
     wait_for(lambda: sum(kept.state is not None for kept in viewer.panel.recorder.kept()) > 1)
     viewer.served.stop_threads()

@@ -237,7 +237,7 @@ SIMPLE = {  # scene -> parameters, what the panel says in a simple drawing, and 
 @pytest.mark.parametrize("plain", [True, False])
 def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutaway(plain: bool) -> None:
     lab = Viewer("127.0.0.1", 0, plain=plain)
-    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.visitors = lambda: [1]  # type: ignore[method-assign]
     try:
         for name, (values, said, key) in SIMPLE.items():
             lab.open(name, check_record(scene_named(name).params, values))

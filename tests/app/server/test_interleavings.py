@@ -52,7 +52,7 @@ def asked(viewer: Viewer, read: Callable[[], Any]) -> Any:
 @pytest.fixture
 def watched(lab: Viewer) -> Viewer:
     """A rope that somebody looks at."""
-    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.visitors = lambda: [1]  # type: ignore[method-assign]
     return lab
 
 
@@ -237,7 +237,7 @@ def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.Monke
 def pane(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A lab to show beside another; it is kept from one comparison to the next."""
     viewer = Viewer("127.0.0.1", 0)
-    viewer.visitors = lambda: 1  # type: ignore[method-assign]
+    viewer.visitors = lambda: [1]  # type: ignore[method-assign]
     monkeypatch.setattr(viewer, "shut", lambda: None)
     yield viewer
     monkeypatch.undo()

@@ -172,7 +172,7 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     lab: Viewer, picky: None, capsys: pytest.CaptureFixture, opened: bool
 ) -> None:
     """In a link or on the command line, and as a preset or a set-up of a scene that runs."""
-    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.visitors = lambda: [1]  # type: ignore[method-assign]
     wrong = check_record(scene_named("rope").params, {"stiffness": 1234.0, "points": 5})
     if opened:
         lab.open("rope", wrong)

@@ -201,7 +201,7 @@ def test_a_tab_that_was_hidden_for_an_hour_goes_on(chromium: Any) -> None:
             assert settled_counts(page) == held
         assert page.evaluate("window.isFirst") is True
         assert page.evaluate("__springtide.quality.now().step") == step
-        assert viewer.visitors() == 1
+        assert len(viewer.visitors()) == 1
     finally:
         page.close()
         viewer.shut()
@@ -307,7 +307,7 @@ def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: 
             back = MAX_BACK + SLOW_MACHINE + (0.0 if wholly else MAX_SILENT)
             shown = wait(lambda shown: shown["state"] == "open" and shown["status"].startswith("Running"), back)
             assert shown["line"] == shown["cover"] == ""
-            assert viewer.visitors() == 1
+            assert len(viewer.visitors()) == 1
         finally:
             page.close()
             viewer.shut()

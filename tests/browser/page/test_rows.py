@@ -779,7 +779,7 @@ def test_a_page_is_loaded_again_left_and_come_back_to(visit: Visit) -> None:
     visit.page.open(f"{visit.address}springtide-alive")
     visit.page.run("setTimeout(() => history.back());")
     visit.page.wait(f"if (location.pathname !== '/') return false; {RUNS}")
-    visit.until(lambda: visit.viewer.visitors() == 1, "a page that was left is still there")
+    visit.until(lambda: len(visit.viewer.visitors()) == 1, "a page that was left is still there")
 
 
 def test_a_hidden_page_goes_on_once_it_is_shown(visit: Visit) -> None:

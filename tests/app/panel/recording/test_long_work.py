@@ -49,7 +49,7 @@ def late(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
 
 @pytest.mark.parametrize("what", [REPLAY, ARRAYS])
 def test_a_file_is_sent_and_said_whatever_scene_is_shown_by_then(lab: Viewer, late: threading.Event, what: str) -> None:
-    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.visitors = lambda: [1]  # type: ignore[method-assign]
     wait_for(lambda: len(lab.panel.recorder.frames) > 3)
     files, make, browser = lab.panel.share.files, lab.panel.share.files.make_replay, Browser()
     files.make_replay = lambda *given: (late.wait(30.0) and make(*given)) or ""

@@ -149,7 +149,7 @@ def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
 @pytest.mark.parametrize("change", [lambda lab: lab.settings.load("Pendulum"), lambda lab: lab.settings.reset()])
 def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None]) -> None:
     """As a user meets it: a rope over the sphere, another preset or a reset, one step, undo."""
-    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.visitors = lambda: [1]  # type: ignore[method-assign]
     lab.settings.load("Over the sphere")
     wait_for(lambda: lab.loop.scene.time > 0.5 and lab.loop.run.running)
     lab.settings.post(Pause())

@@ -20,5 +20,5 @@ class Run(NamedTuple):
     step: float | None  # [s] that was taken; None if the method chose its own
     integrator: str  # that ran: what "auto" took
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
-    unsettled: int = 0  # steps of implicit methods that were taken before Newton's method had settled
+    unsettled: int = 0  # steps of implicit methods and kicks of damped nets whose solver had not settled
     state: Any = None  # `State` at the end, from which `simulate` continues

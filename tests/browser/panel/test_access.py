@@ -207,7 +207,7 @@ def test_every_control_is_reached_by_tab_and_has_a_name(opened: tuple[Viewer, Ta
 
 
 # Shapes in forced colours: the ratio of the lightest to the darkest colour in the rows and columns of their boxes.
-CONTROLS = {
+SHAPES = {
     "button": '[data-springtide-icon="Reset"]',
     "track": ".multi-slider-track-container",
     "thumb": ".multi-slider-thumb",
@@ -241,7 +241,7 @@ def test_controls_have_their_shapes_in_forced_colours(open_tab: Callable[..., Ta
         tab.wait_for_panel(viewer)
         tab.page.emulate_media(forced_colors="active")
         tab.page.wait_for_timeout(500)
-        for name, (x, y, width, height) in tab.page.evaluate(SHOWN_BOXES, CONTROLS).items():
+        for name, (x, y, width, height) in tab.page.evaluate(SHOWN_BOXES, SHAPES).items():
             clip = {"x": x - 3, "y": y - 3, "width": width + 6, "height": height + 6}
             found = luminance(iio.imread(tab.page.screenshot(clip=clip))[..., :3].astype(float))
             assert (found.max() + 0.05) / (found.min() + 0.05) >= 3.0, name

@@ -317,7 +317,8 @@ def test_honey_turns_the_energy_of_its_fall_into_heat():
 def test_a_moved_pin_works_on_its_damper():
     """A pin that is drawn at a steady speed from the end of a chain pulls with b times the relative speed."""
     speed = 0.3
-    pulled = PinPath(0.0, ((0.0, 0.0, 0.0), (0.0, 0.0, speed), (0.0,) * 3, (0.0,) * 3))
+    still = (0.0, 0.0, 0.0)
+    pulled = PinPath(0.0, (still, (0.0, 0.0, speed), still, still))
     net = dataclasses.replace(hanging(2, 0.0, 1e3), gravity=(0.0, 0.0, 0.0), pin_paths=(((0, 0), pulled),))
     state = integrated(net, "leapfrog", 0.5, 30, with_account=True)
     assert state.v[2, 0, 1] == pytest.approx(speed, rel=1e-9)

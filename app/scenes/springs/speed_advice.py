@@ -34,13 +34,16 @@ def either(proposals: list[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def accurate_steps(gauge: Gauge) -> str:
-    """A sentence for a step that is stable but not right: the method that is, and the step up to which its own is."""
+def accurate_steps(gauge: Gauge, *, briefly: bool = False) -> str:
+    """A sentence for a step that is stable but not right: the method that is, and the step up to which its own is.
+
+    briefly: only the first of these.
+    """
     other = f"{method_name(gauge.accurate_method)} at this step" if gauge.accurate_method else ""
     with_own = (
         f"this method up to {longest_step(rounded_down(gauge.accurate_step))}" if gauge.accurate_step > 0.0 else ""
     )
-    right = [words for words in (other, with_own) if words]
+    right = [words for words in (other, with_own) if words][: 1 if briefly else 2]
     return f"Right: {either(right)}." if right else "No method is right at this step."
 
 

@@ -212,7 +212,7 @@ SHAPES = {
     "track": ".multi-slider-track-container",
     "thumb": ".multi-slider-thumb",
     "tab": '[role="tab"]',
-    "gauge": "div:has(> .springtide-step-share) + div",
+    "gauge": ".springtide-step-bar",
 }
 SHOWN_BOXES = """selectors => Object.fromEntries(Object.entries(selectors).map(([name, selector]) => {
     const box = [...document.querySelectorAll(selector)].find(e => e.checkVisibility()).getBoundingClientRect();

@@ -42,14 +42,14 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     wrong = fill('<div class="wrong" style="left:{:.0f}%"></div>', 100.0 * right) if right < 1.0 else Html("")
     return fill(
         '<div><span class="springtide-step-share">{}</span>{} {}</div>'
-        '<div class="springtide-step"><div class="used" style="width:{:.0f}%;background:{}"></div>{}</div>{}',
+        '<div class="springtide-step-bar"><div class="used" style="width:{:.0f}%;background:{}"></div>{}</div>{}',
         share_text(gauge, colour, exact=exact),
         accuracy_text(gauge, colour),
         info(STEP_INFO.format(SPAN, limit_text(gauge), number(gauge.zeta, 2), percent(TOLERANCE)), "1. Springs"),
         100.0 * min(used, 1.0) if used == used else 0.0,
         colour,
         wrong,
-        fill("<div>{}</div>", accurate_steps(gauge)) if gauge.is_wrong else "",
+        fill("<div>{}</div>", accurate_steps(gauge, briefly=True)) if gauge.is_wrong else "",
     )
 
 
@@ -78,7 +78,7 @@ def accuracy_text(gauge: Gauge, colour: str) -> Html:
     if gauge.share > 1.0 or math.isnan(gauge.error):
         return Html("")
     if gauge.is_wrong:
-        return fill(", {}", coloured(f"not right: {error_text(gauge.error)}", colour))
+        return fill(", {}", coloured(error_text(gauge.error), colour))
     return fill(", right to {}", percent(TOLERANCE))
 
 

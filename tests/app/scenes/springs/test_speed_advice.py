@@ -51,3 +51,6 @@ def test_what_is_right_is_named_as_far_as_anything_is():
         accurate_steps(gauge._replace(accurate_step=0.0, accurate_method="tr_bdf2")) == "Right: TR-BDF2 at this step."
     )
     assert accurate_steps(gauge._replace(accurate_step=0.05)) == "Right: this method up to 1/20 s (50 ms)."
+    both = gauge._replace(accurate_step=0.05, accurate_method="tr_bdf2")
+    assert accurate_steps(both) == "Right: TR-BDF2 at this step or this method up to 1/20 s (50 ms)."
+    assert accurate_steps(both, briefly=True) == "Right: TR-BDF2 at this step."

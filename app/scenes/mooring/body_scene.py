@@ -124,11 +124,11 @@ class MooringScene(LineScene):
         limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
         return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
 
-    def is_bounded(self) -> bool:
-        """False once anything is not finite or is farther away than lines reach."""
+    @property
+    def farthest(self) -> float:
+        """[m] from the origin, beyond which nothing can be."""
         p = self.params
-        far = FARTHEST * (p.length + p.reach + p.depth)
-        return bool(np.abs(self.state.x).max() < far)  # false for NaN too
+        return FARTHEST * (p.length + p.reach + p.depth)
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

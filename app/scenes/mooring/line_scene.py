@@ -32,6 +32,7 @@ from sim.validation import DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
+MAX_STRAIN = 1.0  # beyond that at rest: a run has diverged. Nylon breaks at half of it, and drag bounds positions
 SAMPLE = 1 / 240  # [s] between two samples of the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
@@ -86,6 +87,7 @@ class LineScene(abc.ABC):
         self.state = State.still(rest.nodes)
         self.excursion = Excursion(self.body_place())
         stretch = self.rows.stretch(rest.nodes)
+        self.largest_strain = MAX_STRAIN + max(self.rows.largest_strain(rest.nodes), 0.0)
         self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
         self.assess_stability()
         self.tensions = Tensions(len(self.rows.lengths))
@@ -143,9 +145,15 @@ class LineScene(abc.ABC):
     def paths(self, duration: float) -> NDArray[np.float64]:
         """(moved points, 5, 3) for `duration` [s], as `LineArrays` has them."""
 
+    @property
     @abc.abstractmethod
+    def farthest(self) -> float:
+        """[m] from the origin, beyond which nothing can be: more than the lines reach."""
+
     def is_bounded(self) -> bool:
-        """False once a value is not finite or a point is farther away than the lines reach."""
+        """False once a value is not finite, a point is farther away than the lines reach, or a piece is torn."""
+        x = self.state.x
+        return bool(np.abs(x).max() < self.farthest) and self.rows.largest_strain(x) < self.largest_strain
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would be stable."""

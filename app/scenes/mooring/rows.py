@@ -38,6 +38,11 @@ class LineRows(NamedTuple):
         spans = np.linalg.norm(np.diff(self.points(x), axis=1), axis=2).sum(axis=1)
         return spans / self.lengths - 1.0
 
+    def largest_strain(self, x: NDArray[np.float64]) -> float:
+        """Largest strain of a piece, with nodes x (3, nodes)."""
+        pieces = np.linalg.norm(np.diff(self.points(x), axis=1), axis=2)
+        return float((pieces / self.lengths[:, None]).max()) * self.links.shape[1] - 1.0
+
     def lying(self, points: NDArray[np.float64], bed: float) -> NDArray[np.float64]:
         """Unstretched length (lines,) [m] of the pieces with both ends at the height `bed` [m] or below it."""
         down = points[:, :, 2] <= bed

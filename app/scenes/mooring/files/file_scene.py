@@ -111,9 +111,10 @@ class FileScene(LineScene):
         points = self.file.system.points
         return np.array([points[node].position for node in self.file.vessel]).reshape(-1, 3)
 
-    def is_bounded(self) -> bool:
-        """False once anything is not finite or is farther away than lines reach."""
-        return bool(np.abs(self.state.x).max() < FARTHEST * extent(self.params) + self.rows.lengths.sum())
+    @property
+    def farthest(self) -> float:
+        """[m] from the origin, beyond which nothing can be."""
+        return FARTHEST * extent(self.params) + float(self.rows.lengths.sum())
 
     def frame(self) -> MooringFrame:
         """Frame to draw."""

@@ -95,7 +95,7 @@ def test_leapfrog_needs_a_tenth_of_the_evaluations_of_the_lab_s_euler():
     problem = rope.PROBLEMS[0]
     truth = rope.truth_of(problem)
     table = [
-        row for name in ("leapfrog", "symplectic_euler", "rk4") for row in rope.ladder(problem, name, truth, 3000, 1)
+        row for name in ("leapfrog", "symplectic_euler", "rk4") for row in rope.ladder(problem, name, truth, 6000, 1)
     ]
     leapfrog, euler = (
         rope.evaluations_at(table, name, rope.COMPARED_ERROR) for name in ("leapfrog", "symplectic_euler")

@@ -16,7 +16,6 @@ from app.scenes.mooring.start import rest_or_start
 from app.scenes.mooring.start_check import Fault, fault_of, overload_of
 
 GRAB_RATE = 1.0  # [rad/s] natural frequency of the grab of the body
-FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
 CHANGING = (
     "state", "system", "attached", "tensions", "excursion", "start", "body", "sea", "rows", "step_modes",
 )  # fmt: skip
@@ -123,12 +122,6 @@ class MooringScene(LineScene):
         force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
         limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
         return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
-
-    @property
-    def farthest(self) -> float:
-        """[m] from the origin, beyond which nothing can be."""
-        p = self.params
-        return FARTHEST * (p.length + p.reach + p.depth)
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -32,7 +32,6 @@ from sim.validation import DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
-MAX_STRAIN = 1.0  # beyond that at rest: a run has diverged. Nylon breaks at half of it, and drag bounds positions
 SAMPLE = 1 / 240  # [s] between two samples of the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
@@ -86,9 +85,8 @@ class LineScene(abc.ABC):
         rest, failure = rest_or_start(self.system)
         self.state = State.still(rest.nodes)
         self.excursion = Excursion(self.body_place())
-        stretch = self.rows.stretch(rest.nodes)
-        self.largest_strain = MAX_STRAIN + max(self.rows.largest_strain(rest.nodes), 0.0)
-        self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
+        fault = self.fault_of(self.rows.stretch(rest.nodes), failure)
+        self.start = MooringStart.of(rest, self.rows, fault, failure)
         self.assess_stability()
         self.tensions = Tensions(len(self.rows.lengths))
         self.measure()
@@ -144,16 +142,6 @@ class LineScene(abc.ABC):
     @abc.abstractmethod
     def paths(self, duration: float) -> NDArray[np.float64]:
         """(moved points, 5, 3) for `duration` [s], as `LineArrays` has them."""
-
-    @property
-    @abc.abstractmethod
-    def farthest(self) -> float:
-        """[m] from the origin, beyond which nothing can be: more than the lines reach."""
-
-    def is_bounded(self) -> bool:
-        """False once a value is not finite, a point is farther away than the lines reach, or a piece is torn."""
-        x = self.state.x
-        return bool(np.abs(x).max() < self.farthest) and self.rows.largest_strain(x) < self.largest_strain
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would be stable."""
@@ -222,7 +210,7 @@ class LineScene(abc.ABC):
             good = self.state.copy()
             paths = self.paths(h * count)
             advance(self.system, self.state, method, h, count, driven={"paths": paths, **self.driven()})
-            if not self.is_bounded():
+            if not self.start.is_near(self.state.x, self.rows):
                 self.state = good
                 raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
             self.measure()

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.scenes.mooring.rows import LineRows
 from app.scenes.mooring.start_check import Fault
 from sim.mooring import System, at_rest
 from sim.mooring.rest.statics import Rest, rest_of, straight
@@ -13,6 +14,9 @@ from sim.validation import ConvergenceError
 
 NO_REST = "No state of rest was found for the lines"
 LEAST_SCALE = 1.0  # [N]
+# Of lines and places at rest, beyond which a run has diverged. Drag bounds positions where steps are not far too long,
+# and nylon breaks at half of the strain.
+FARTHEST, MAX_STRAIN = 5.0, 1.0
 
 
 class MooringStart(NamedTuple):
@@ -22,14 +26,22 @@ class MooringStart(NamedTuple):
     stretch: NDArray[np.float64]  # (lines,) over the length
     fault: Fault | None
     failure: str  # reason why no state of rest was found, or ""; then nothing moves
+    farthest: float  # [m] largest coordinate of a state that has not diverged
+    largest_strain: float  # of a piece in such a state
 
     @classmethod
-    def of(cls, rest: Rest, stretch: NDArray[np.float64], fault: Fault | None, failure: str) -> "MooringStart":
+    def of(cls, rest: Rest, rows: LineRows, fault: Fault | None, failure: str) -> "MooringStart":
         """Make the start from a state of rest. A failure is the fault if there is no other."""
         scale = max(float(max(tension.max() for tension in rest.tension.values())), LEAST_SCALE)
         if fault is None and failure:
             fault = Fault(failure, NO_REST, "length", None, True)
-        return cls(scale, stretch, fault, failure)
+        farthest = FARTHEST * float(rows.lengths.sum() + np.abs(rest.nodes).max())
+        largest_strain = MAX_STRAIN + max(rows.largest_strain(rest.nodes), 0.0)
+        return cls(scale, rows.stretch(rest.nodes), fault, failure, farthest, largest_strain)
+
+    def is_near(self, x: NDArray[np.float64], rows: LineRows) -> bool:
+        """False for a state x (3, nodes) [m] that is not finite, or beyond the reach or strain of any line."""
+        return bool(np.abs(x).max() < self.farthest) and rows.largest_strain(x) < self.largest_strain
 
 
 def rest_or_start(system: System) -> tuple[Rest, str]:

@@ -26,7 +26,7 @@ LONGEST_STEP = 1 / 15  # [s] of every ladder
 TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(4, 23))  # rtol; atol is a hundredth of it
 REFERENCE_TOLERANCE = 1e-12  # rtol
 MAX_ERROR = 0.5  # [m] a larger one means that the run diverged, or another motion altogether
-COMPARED_ERROR = 2e-3  # [m] at which leapfrog is compared with the lab's Euler
+COMPARED_ERROR = 1e-3  # [m] at which leapfrog is compared with the lab's Euler
 
 
 class Problem(NamedTuple):

@@ -20,7 +20,6 @@ from sim.mooring.motion import cubic
 from sim.waves import Waves
 
 VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
-FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
 CHANGING = (
     "state", "system", "tensions", "excursion", "start", "vessel", "sea", "step_modes", "moved_by",
 )  # fmt: skip
@@ -110,11 +109,6 @@ class FileScene(LineScene):
         """(coupled points, 3) [m] at the start."""
         points = self.file.system.points
         return np.array([points[node].position for node in self.file.vessel]).reshape(-1, 3)
-
-    @property
-    def farthest(self) -> float:
-        """[m] from the origin, beyond which nothing can be."""
-        return FARTHEST * extent(self.params) + float(self.rows.lengths.sum())
 
     def frame(self) -> MooringFrame:
         """Frame to draw."""

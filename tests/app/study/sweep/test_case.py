@@ -103,7 +103,7 @@ def test_a_mooring_in_calm_water_is_at_rest_and_one_with_too_long_a_step_diverge
     assert found["largest_tension"][1] == pytest.approx(found["largest_tension"][0], rel=1e-6)
     assert found["largest_offset"][1] == pytest.approx(0.0, abs=1e-6)
     assert found["slack_fraction"] == [0.0, 0.0]
-    outcome = run_case("mooring", {**values, "time_step": 2.0 * found["critical_step"][0]}, (0.0, 20.0))
+    outcome = run_case("mooring", {**values, "time_step": 4.0 * found["critical_step"][0]}, (0.0, 20.0))
     assert outcome.end == DIVERGED
     assert outcome.measures["largest_tension"][0] == found["largest_tension"][0]
     assert math.isnan(outcome.measures["largest_tension"][1])

@@ -6,15 +6,24 @@ the other side computes it), or `["failed", kind, text, file, line, loading]` (l
 It sends `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
-at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
-function has a side effect (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
-its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
-it sends `["at", file, line, function, processor time]` repeatedly on systems that do not tell the lab
-(`call_limit.py`). Printed lines are counted and dropped: the pipes belong to the lab.
+at many arguments (`tabulate.py`). Printed lines are counted and dropped: the pipes belong to the lab.
+
+`["watch", file, function, [twice, arguments]]` is a call that fails where the function has a side effect
+(`diagnosis/effects.py`). `["edits", file, function, [kind, names, conditions, arguments]]` calls its edits,
+`["words", file, function, [numbers, units, clashes]]` describes some of them, and
+`["edited", file, function, [number, arguments]]` calls one of them (`diagnosis/edits.py`).
+`["course", "", "", {name: text}]` has no answer: while a function is watched, these solutions stand in for the
+functions of the course that it calls, and `["called", file, function, []]` tells which it has called. During a long
+call it sends
+`["at", file, line, function, work, processor time]` repeatedly on systems that do not tell the lab (`call_limit.py`).
 """
 
+import ast
+import builtins
 import contextlib
+import difflib
 import faulthandler
+import functools
 import importlib
 import importlib.util
 import io
@@ -24,16 +33,29 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from app.lab.check.diagnosis.edits import Edit, own_edits
+import numpy as np
+
+from app.lab.check.diagnosis.causes import causes, late_causes, traps
+from app.lab.check.diagnosis.edits import Candidate, Tree, more_slips, slips
 from app.lab.check.diagnosis.effects import Effect, copied, state_of, watched
 from app.lab.process.cloth_march import ClothFunctions
 from app.lab.process.rope_march import ClothData, Functions, Unfit, march, unpacked
-from app.lab.process.shared import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
+from app.lab.process.shared import (
+    BACKGROUND_NICENESS,
+    COMPILES,
+    FORKS,
+    ROPE_NICENESS,
+    TRACE_SIGNAL,
+    CodePlace,
+    lower_priority,
+    place_in,
+)
 from app.lab.process.tabulate import Interval, tabulate
 from app.lab.process.template import fork_on_request
 from app.lab.process.wire import pack, receive, send, unpack
@@ -41,6 +63,9 @@ from app.lab.process.wire import pack, receive, send, unpack
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
+OF_THE_PROGRAM = ("app", "sim", "assets")  # packages whose names a student's file may have
+SLIPS = "slips"
+EDITS = {"traps": traps, "causes": causes, "more slips": more_slips}  # kinds of edits beside `SLIPS`
 LOOK_AT_PARENT = 1.0  # [s] between two checks that the lab still runs
 PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on its place and processor time
 
@@ -82,8 +107,12 @@ class Worker:
         sys.stdin = io.StringIO()
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
+        self.imported: set[str] = set()  # files whose imports in functions are done
         self.states: dict[str, Any] = {}  # of the modules, before any watched call
-        self.edits: list[Edit] = []  # of the last requested function
+        self.course: dict[str, Callable[..., Any]] = {}  # solutions of the course, by name
+        self.called: set[str] = set()  # of these, by the functions that were watched
+        self.tree: Tree | None = None  # of the last function with edits
+        self.edits: list[tuple[Candidate, Callable[..., Any]]] = []
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()
@@ -95,6 +124,23 @@ class Worker:
         self.folder = folder
         os.chdir(folder)
         sys.path.insert(0, str(folder))
+        own = {name: f"{name}.py" for name in OF_THE_PROGRAM if (folder / f"{name}.py").is_file()}
+        if own:
+            builtins.__import__ = self.importing(own, builtins.__import__)
+
+    def importing(self, own: dict[str, str], otherwise: Callable[..., Any]) -> Callable[..., Any]:
+        """Python's import, by which a student's file gets the student's sim.py, not the package of that name.
+
+        own: files by the names of their modules. otherwise: the import of everything else.
+        """
+
+        def own_import(name: str, known: Any = None, *rest: Any, **named: Any) -> Any:
+            importer = (known or {}).get("__file__") or ""
+            if name in own and os.path.dirname(importer) == str(self.folder):
+                return self.load(own[name])
+            return otherwise(name, known, *rest, **named)
+
+        return own_import
 
     def serve(self) -> None:
         """Report that the process is ready, then answer until the lab closes the pipe."""
@@ -105,6 +151,9 @@ class Worker:
         self.enter(Path(told[1]))
         while (message := receive(self.incoming)) is not None:
             kind, file, function, arguments = message
+            if kind == "course":
+                self.course = solutions(arguments)
+                continue
             self.output.lines = 0
             self.began = time.process_time()
             self.in_call.set()
@@ -134,12 +183,10 @@ class Worker:
             self.in_call.wait()
             time.sleep(PLACE_INTERVAL)
             frames = traceback.walk_stack(sys._current_frames()[main or 0])
-            codes = [(frame.f_code, line) for frame, line in frames]
-            own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
+            place = place_in(self.folder, [(f.f_code.co_filename, line, f.f_code.co_name) for f, line in frames])
             with self.sending, contextlib.suppress(OSError):  # the lab has ended
                 if self.in_call.is_set():  # no place is sent after the result
-                    at = [(Path(code.co_filename).name, line, code.co_name) for code, line in own] or [("", 0, "")]
-                    send(self.outgoing, ["at", *at[0], time.process_time() - self.began])
+                    send(self.outgoing, ["at", *(place or CodePlace("", 0, "")), time.process_time() - self.began])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -163,9 +210,9 @@ class Worker:
                     functions = ClothFunctions(module, own, step, ClothData(*sheet))
                 done = march(functions, x, v, [unpacked(segment) for segment in segments])
                 return ["result", pack(tuple(done), lambda _: 0)]
-            target = getattr(module, function, None)
+            target = plain(getattr(module, function, None))
             if not callable(target):
-                return ["failed", "missing", f"there is no function {function}", file, None, False]
+                return ["failed", "missing", missing(module, function), file, None, False]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
                 return ["result", pack(tabulate(target, function, columns, shape, Interval(*allowed)), lambda _: 0)]
@@ -173,13 +220,19 @@ class Worker:
                 twice, arguments = arguments
                 value = self.watch(file, function, unpack(arguments, self.remote), twice=twice)
             elif kind == "edits":
-                far, arguments = arguments
-                value = self.try_edits(file, function, unpack(arguments, self.remote), far=far)
+                *facts, arguments = arguments
+                with self.solved([module, *self.others(file)], function):
+                    which, names, conditions = facts
+                    given = unpack(arguments, self.remote)
+                    value = self.try_edits(file, function, which, names, conditions, given)
+            elif kind == "called":
+                value, self.called = sorted(self.called), set()
+            elif kind == "words":
+                value = self.edits_in_words(*arguments)
             elif kind == "edited":
                 number, arguments = arguments
-                module, target = self.modules[file], self.edits[number].function
-                given = unpack(arguments, self.remote)
-                value = watched(target, [module], given, self.folder, lambda: (target, [module]), twice=False)
+                with self.solved([module, *self.others(file)], function):
+                    value = self.try_edit(file, self.edits[number][1], unpack(arguments, self.remote))
             else:
                 value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
@@ -201,36 +254,102 @@ class Worker:
             text = "".join(traceback.format_exception_only(error)).strip().splitlines()
             return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file), loading]
 
+    @contextlib.contextmanager
+    def solved(self, modules: list[ModuleType], function: str) -> Iterator[None]:
+        """The course's own solutions in place of the other functions of the course that the student's modules have."""
+        before: list[tuple[ModuleType, str, Any]] = []
+        for own in modules:
+            for key, value in list(vars(own).items()):
+                name = key if key in self.course else getattr(value, "__name__", "")
+                if name in self.course and name != function and (callable(value) or key == name):
+                    before.append((own, key, value))
+                    setattr(own, key, functools.partial(self.solution, name))
+        try:
+            yield
+        finally:
+            for own, key, value in before:
+                setattr(own, key, value)
+
+    def solution(self, name: str, *arguments: Any, **named: Any) -> Any:
+        """The value of a solution of the course, whose use is noted."""
+        self.called.add(name)
+        return self.course[name](*arguments, **named)
+
     def watch(self, file: str, function: str, arguments: list[Any], *, twice: bool) -> Any:
         """The result of a function without side effects. Raises Effect."""
         module = self.modules[file]
         if file not in self.states:
             self.states[file] = state_of([module])
-        others = modules_below(module, self.folder)
+        others = self.others(file)
 
         def anew() -> tuple[Callable[..., Any], list[ModuleType]]:
             module = self.run(file)
-            return getattr(module, function), [module, *others]
+            return plain(getattr(module, function)), [module, *others]
 
-        target, modules = getattr(module, function), [module, *others]
+        target, modules = plain(getattr(module, function)), [module, *others]
         if state_of([module]) != self.states[file]:  # an earlier call has changed something
             target, modules = anew()
-        return watched(target, modules, arguments, self.folder, anew, twice=twice)
+        with self.solved(modules, function):
+            return watched(target, modules, arguments, self.folder, anew, twice=twice)
 
-    def try_edits(self, file: str, function: str, arguments: list[Any], *, far: bool) -> list[Any]:
-        """The results of the edits of a function: number, before, after, line, condition and result of each."""
+    def others(self, file: str) -> list[ModuleType]:
+        """The student's modules that a file uses, also those that its functions import."""
+        module = self.modules[file]
+        if file not in self.imported:
+            self.imported.add(file)
+            with contextlib.suppress(SyntaxError, ValueError):
+                for name in imports_of((self.folder / file).read_bytes()):
+                    if (self.folder / f"{name}.py").is_file():
+                        with contextlib.suppress(Exception):  # the function says so when it is called
+                            importlib.import_module(name)
+        loaded = [value for value in list(sys.modules.values()) if isinstance(value, ModuleType)]
+        own = [value for value in loaded if os.path.dirname(getattr(value, "__file__", None) or "") == str(self.folder)]
+        return [value for value in own if value is not module and value.__file__ != module.__file__]
+
+    def try_edits(
+        self, file: str, function: str, kind: str, names: list[str], conditions: list[str], arguments: list[Any]
+    ) -> list[Any]:
+        """The results of the edits of a function: number and result of each. kind: of `EDITS`.
+
+        names, conditions: as of `slips`.
+        """
         self.edits, found = [], []
         end = time.process_time() + EDIT_TIME
-        for edit in own_edits((self.folder / file).read_bytes(), function, vars(self.modules[file]), far=far):
+        try:
+            source, known = (self.folder / file).read_bytes(), vars(self.modules[file])
+            tree = self.tree = Tree(source, function, known, tuple(self.course))
+        except LookupError:
+            return []
+        is_clean = raises_no_warning(plain(getattr(self.modules[file], function)), arguments)
+        found_edits = EDITS[kind](tree) if kind != SLIPS else (*slips(tree, names, conditions), *late_causes(tree))
+        for candidate in found_edits:
             if time.process_time() > end:
                 break
+            target = tree.function(candidate)
+            if target is None:
+                continue
             try:
-                value = edit.function(*copied(arguments))
+                with strict(is_clean):
+                    value = target(*copied(arguments))
             except Exception:
                 continue
-            found.append([len(self.edits), edit.before, edit.after, edit.line, edit.condition, value])
-            self.edits.append(edit)
+            found.append([len(self.edits), value])
+            self.edits.append((candidate, target))
         return found
+
+    def edits_in_words(self, numbers: list[int], units: dict[str, str], most: int) -> list[Any]:
+        """Edits in words, without those that join more than `most` pairs of other units. units: of the arguments."""
+        assert self.tree is not None
+        chosen = [(number, self.edits[number][0]) for number in numbers]
+        clear = [(number, candidate) for number, candidate in chosen if self.tree.clashes(candidate, units) <= most]
+        return [[number, *self.tree.words(candidate)] for number, candidate in clear]
+
+    def try_edit(self, file: str, target: Callable[..., Any], arguments: list[Any]) -> Any:
+        """The result of an edit, which must not warn where the function itself does not. Raises Effect."""
+        module = self.modules[file]
+        function = plain(getattr(module, target.__name__))
+        with strict(raises_no_warning(function, arguments)):
+            return watched(target, [module], arguments, self.folder, lambda: (target, [module]), twice=False)
 
     def place(self, file: str) -> tuple[str, int | None]:
         """File and line of the student's code where the present exception arose."""
@@ -275,18 +394,66 @@ class Worker:
         return function
 
 
-def modules_below(module: ModuleType, folder: Path) -> list[ModuleType]:
-    """The modules of a folder that one of its modules uses, directly or indirectly."""
-    found = [module]
-    for user in found:
-        for value in vars(user).values():
-            name = None if isinstance(value, ModuleType) else getattr(value, "__module__", None)
-            other = value if name is None else sys.modules.get(name)
-            if isinstance(other, ModuleType) and all(other is not known for known in found):
-                file = getattr(other, "__file__", None) or ""
-                if os.path.dirname(file) == str(folder) and file != module.__file__:
-                    found.append(other)
-    return found[1:]
+def imports_of(source: bytes) -> Iterator[str]:
+    """The names of the modules that a file imports anywhere. Raises SyntaxError, ValueError."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+
+
+def plain(function: Any) -> Any:
+    """A function without numba's compiler: the check needs few calls of it."""
+    return getattr(function, "py_func", function)
+
+
+def missing(module: ModuleType, function: str) -> str:
+    """Words for a function that a module lacks, with a name that is near."""
+    text = f"there is no function {function}"
+    if function in vars(module):
+        return f"{text}: its name stands for a value of type {type(vars(module)[function]).__name__}"
+    for name, value in vars(module).items():
+        if isinstance(value, type) and callable(getattr(value, function, None)):
+            return f"{text} at the left margin: it is a method of the class {name}"
+    names = [name for name, value in vars(module).items() if callable(value)]
+    plainest = {name.lower().replace("_", ""): name for name in names}
+    near = difflib.get_close_matches(function.replace("_", ""), plainest, 1, 0.8)
+    return f"{text}. Is it {plainest[near[0]]}?" if near else text
+
+
+def solutions(sources: dict[str, str]) -> dict[str, Callable[..., Any]]:
+    """Functions from their texts, which use no other name than np; without those that cannot be run."""
+    found = {}
+    for name, source in sources.items():
+        inside: dict[str, Any] = {"np": np}
+        with contextlib.suppress(Exception):  # of a teacher's file
+            exec(compile(source, f"<{name} of the course>", "exec"), inside)
+            found[name] = inside[name]
+    return found
+
+
+@contextlib.contextmanager
+def strict(is_strict: bool) -> Iterator[None]:
+    """Warnings, and numbers that are not finite, are errors in a `with` block."""
+    with contextlib.ExitStack() as opened:
+        if is_strict:
+            opened.enter_context(np.errstate(all="raise", under="ignore"))
+            opened.enter_context(warnings.catch_warnings())
+            warnings.simplefilter("error")
+        yield
+
+
+def raises_no_warning(function: Callable[..., Any], arguments: list[Any]) -> bool:
+    """False if a function warns at these arguments, or has a number on the way that is not finite."""
+    try:
+        with strict(True):
+            function(*copied(arguments))
+    except (FloatingPointError, Warning):
+        return False
+    except Exception:
+        return True
+    return True
 
 
 def limit_memory() -> None:

@@ -158,7 +158,9 @@ class Classroom:
 
 def result_of(task: Task, program: Verdict | None, answers: Answers) -> TaskResult:
     """The result of one task."""
-    return TaskResult(task, program, tuple(check_answer(q, answers.of(task, q)) for q in task.questions))
+    return TaskResult(
+        task, program, tuple(check_answer(q, answers.of(task, q), answers.unread_of(task, q)) for q in task.questions)
+    )
 
 
 def turned(before: Student, after: Student) -> Student:

@@ -27,6 +27,14 @@ def inputs(rng):
     return x, 4.0 * v, level, rng.uniform(2.0, 20.0)
 
 
+# A jet at 45 degrees, one straight down, one from the surface.
+EXAMPLES = (
+    (np.array([0.0, 0.0, 3.0]), np.array([8.0, 0.0, 8.0]), 0.0, 9.81),
+    (np.array([1.0, 2.0, 4.0]), np.array([0.0, 0.0, -2.0]), -1.0, 9.81),
+    (np.array([0.0, 1.0, 0.5]), np.array([3.0, -40.0, 60.0]), 0.5, 2.1135),
+)
+
+
 def at(time, height=None):
     """A function that makes a mistake: the position at another time, or at another height."""
 

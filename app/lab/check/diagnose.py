@@ -20,7 +20,6 @@ import numpy as np
 from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, has, parts, reproduces, same, same_shape
 from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.conditions import conditions_of
-from app.lab.check.diagnosis.edits import explain_repair
 from app.lab.check.diagnosis.explanation import Explanation
 from app.lab.check.diagnosis.steps import explain_step
 from app.lab.check.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
@@ -36,6 +35,7 @@ MAX_DRAWS = 200  # of inputs, to find enough
 UNUSED_SAMPLES = 20  # inputs that are exchanged with each other, for an argument without effect
 SMALLER = 1e-3  # of an argument, at which a result that seems not to depend on it is tried too
 MAX_REPAIRS = 20  # that are right at one input and are tried at the others
+EDITS_LIMIT = 2.0  # [s] for all edits of a kind
 MANY = 4  # further texts that may stand at a place, from where on what stands there has no effect
 NEARLY = 0.05  # of the largest value of a result, within which it is nearly right
 UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results without a test of behaviour
@@ -177,9 +177,9 @@ def repair(student: StudentFunction, samples: Sequence[Sample], first: int, *kin
             if calls_back and kind not in ("traps", "causes"):
                 return None
             try:
-                edits = runner.edits(task.file, task.name, kind, task.arguments, conditions, *sample)
+                edits = student.ask("edits", kind, task.arguments, conditions, sample, time_limit=EDITS_LIMIT)
                 right_ones = [number for number, value in edits if is_repaired(student, value, sample, right)]
-                words = runner.edits_in_words(task.file, task.name, right_ones, units, most)
+                words = student.ask("words", right_ones, list(units.items()), most)
             except RunError:  # an edit that does not end
                 continue
             passing = (
@@ -199,6 +199,22 @@ def repair(student: StudentFunction, samples: Sequence[Sample], first: int, *kin
         student.effort += runner.effort - before  # the student's function is not charged for this
 
 
+def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -> Explanation:
+    """The words for an edit that makes a student's function right. shown: as of `Edit`."""
+    before, _, line = shown[0]
+    if condition:
+        how = f"It is right if the condition {before} in line {line} {condition} holds."
+    elif cause.endswith("it is right."):
+        return Explanation("", cause, line=line)
+    else:
+        parts = [
+            f"{f'with {after} in place of' if after else 'without'} {before} in line {line}"
+            for before, after, line in shown
+        ]
+        how = f"{', and '.join(parts)} it is right."
+    return Explanation("", f"{cause} {how[0].upper()}{how[1:]}".strip(), line=line)
+
+
 def is_repaired(student: StudentFunction, value: Any, sample: Sample, right: Any) -> bool:
     """True if a value is the right one at an input."""
     try:
@@ -211,10 +227,8 @@ def is_repaired(student: StudentFunction, value: Any, sample: Sample, right: Any
 def passes(function: StudentFunction, samples: Sequence[Sample]) -> bool:
     """True if a function passes everything that decides whether it is right, within narrower limits."""
     try:
-        for sample in samples:
-            trial = function.trial(sample)
-            if not same(trial.found, trial.right, REPAIR_TOLERANCE):
-                return False
+        if not all(same(trial.found, trial.right, REPAIR_TOLERANCE) for trial in function.trials(samples)):
+            return False
         behave(function)
     except (RunError, Wrong, ValueError, IndexError):
         return False

@@ -127,7 +127,7 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
         place = place_of(task.file, error.line or line)
         return Verdict("wrong", str(error), error.mistake, place, equations=error.equations)
     with contextlib.suppress(RunError):
-        return Verdict("right", calls=tuple(runner.called(task.file, task.name)))
+        return Verdict("right", calls=tuple(str(name) for name in student.ask("called")))
     return Verdict("right")
 
 
@@ -174,7 +174,7 @@ def compare(student: StudentFunction) -> None:
     samples = inputs_of(check, student.task.name)
     student.takes_all = True
     try:
-        trials = [student.trial(sample, twice=i < TWICE) for i, sample in enumerate(samples)]
+        trials = list(student.trials(samples, TWICE))
     except RunError as error:
         raise error_with_repair(student, samples, error) from None
     except Wrong as error:

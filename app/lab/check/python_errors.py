@@ -42,7 +42,6 @@ ERRORS = tuple(
         (r"too many indices", "The array has fewer dimensions than indices."),
         (r"UnboundLocalError", "A branch in which it is not set has been taken, or it is set only below this line."),
         (r"RecursionError", "The function calls itself without an end."),
-        (r"division by zero", "A number is divided by 0 at this input."),
         (r"sequence by non-int|concatenate list|operand type\(s\) for .*'(list|tuple)'|bad operand type .*'list'",
          "A list is no vector: make an array of it, np.array(...)."),
         (r"not iterable", "A single number stands where several are needed."),

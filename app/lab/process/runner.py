@@ -46,7 +46,6 @@ AT_LOADING = (
     'What stands outside of functions runs whenever the file is loaded: put it under if __name__ == "__main__":'
 )
 BUSY = "busy"  # kind of an error that the student's functions did not cause
-EDITS_LIMIT = 2.0  # [s] for the edits of a function
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
 TRACE_TIME = 0.2  # [s] for a process without an answer to report its place
@@ -118,43 +117,7 @@ class Runner:
 
         Functions among the arguments run here when the student's function calls them. Raises RunError.
         """
-        return self._ask("call", file, function, list(arguments))
-
-    def watch(self, file: str, function: str, *arguments: Any, twice: bool) -> Any:
-        """As `call`, of a function without side effects. twice: two equal calls are compared.
-
-        Raises RunError with a kind of `effects.EFFECTS` too.
-        """
-        return self._ask("watch", file, function, [twice, list(arguments)])
-
-    def edits(
-        self, file: str, function: str, kind: str, names: Sequence[str], conditions: Sequence[str], *arguments: Any
-    ) -> list[Any]:
-        """Number and result of each function that differs by an edit from one. kind, names, conditions: of the worker.
-
-        Raises RunError.
-        """
-        found = self._ask("edits", file, function, [kind, list(names), list(conditions), list(arguments)], EDITS_LIMIT)
-        return found if isinstance(found, list) else []
-
-    def edits_in_words(
-        self, file: str, function: str, numbers: Sequence[int], units: Mapping[str, str], clashes: int
-    ) -> list[Any]:
-        """Number, rank, cause, condition and changes of some of the last `edits`. Raises RunError.
-
-        Those that join more than `clashes` pairs of quantities of different units are left out. units: of arguments.
-        """
-        found = self._ask("words", file, function, [list(numbers), dict(units), clashes])
-        return found if isinstance(found, list) else []
-
-    def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:
-        """As `call`, of one of the last `edits`."""
-        return self._ask("edited", file, function, [number, list(arguments)])
-
-    def called(self, file: str, function: str) -> list[str]:
-        """The functions of `course` that the function watched last has called. Raises RunError."""
-        found = self._ask("called", file, function, [])
-        return [str(name) for name in found] if isinstance(found, list) else []
+        return self.ask("call", file, function, list(arguments))
 
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
@@ -167,7 +130,7 @@ class Runner:
         sheet = segments[0].sheet
         arguments = [sorted(own), step, sheet, x, v, [packed(segment) for segment in segments]]
         file = ROPE_FILE if sheet is None else CLOTH_FILE
-        answer = self._ask("march", file, step, arguments)
+        answer = self.ask("march", file, step, arguments)
         if not is_march(answer, x.shape):
             self.close()
             raise RunError("ended", f"{step} wrote into the lab's pipe", file)
@@ -184,7 +147,7 @@ class Runner:
         parts: list[np.ndarray] = []
         for first in range(0, len(columns[0]), TABLE_ROWS):
             rows = [column[first : first + TABLE_ROWS] for column in columns]
-            part = self._ask("table", file, function, [rows, shape, list(allowed)])
+            part = self.ask("table", file, function, [rows, shape, list(allowed)])
             is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
             if not is_table or part.shape != (len(rows[0]), *(shape or ())) or not np.isfinite(part).all():
                 self.close()
@@ -197,7 +160,7 @@ class Runner:
 
         Raises RunError.
         """
-        names, why = self._ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
+        names, why = self.ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
         return names, why
 
     def abort(self) -> None:
@@ -216,8 +179,11 @@ class Runner:
         """Start the process, so that the next call need not wait for it. Raises RunError if it does not start."""
         self._ready()
 
-    def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
-        """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
+    def ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
+        """Answer of the process to a message of a kind of `worker.py`. Raises RunError.
+
+        function: its name for errors. time_limit: [s]; None for that of the runner.
+        """
         if self._aborted:
             raise RunError("ended", "the lab has ended the process", file)
         if not (self.folder / file).is_file():
@@ -244,7 +210,7 @@ class Runner:
         self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float,
         functions: list[Callable[..., Any]],
     ) -> Any:  # fmt: skip
-        """As `_ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
+        """As `ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
 
         def refer(function: Callable[..., Any]) -> int:
             functions.append(function)

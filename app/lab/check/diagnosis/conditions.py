@@ -1,4 +1,4 @@
-"""The conditions of a reference solution, in its arguments, as edits of a student's conditions."""
+"""The conditions of a reference solution, in its arguments, for edits of a student's conditions."""
 
 import ast
 import copy
@@ -34,12 +34,3 @@ class Inlined(ast.NodeTransformer):
         self.generic_visit(node)
         is_plain = isinstance(node.func, ast.Attribute) and node.func.attr == "asarray"
         return node.args[0] if is_plain else node
-
-
-def renamed(text: str, names: Mapping[str, str]) -> ast.expr:
-    """A condition with other names of its arguments."""
-    tree = ast.parse(text, mode="eval").body
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name):
-            node.id = names.get(node.id, node.id)
-    return tree

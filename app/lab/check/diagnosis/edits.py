@@ -13,8 +13,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from app.lab.check.diagnosis.conditions import renamed
-from app.lab.check.diagnosis.explanation import Explanation
 from app.lab.check.diagnosis.units import clashes
 
 # Kinds of edits, the most likely first: a named cause, less text, a fixed condition, another text, more text.
@@ -428,17 +426,10 @@ def source_of(node: ast.AST | None) -> str:
     return "" if node is None else ast.unparse(node)
 
 
-def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -> Explanation:
-    """The words for an edit that makes a student's function right. shown: as of `Edit`."""
-    before, _, line = shown[0]
-    if condition:
-        how = f"It is right if the condition {before} in line {line} {condition} holds."
-    elif cause.endswith("it is right."):
-        return Explanation("", cause, line=line)
-    else:
-        parts = [
-            f"{f'with {after} in place of' if after else 'without'} {before} in line {line}"
-            for before, after, line in shown
-        ]
-        how = f"{', and '.join(parts)} it is right."
-    return Explanation("", f"{cause} {how[0].upper()}{how[1:]}".strip(), line=line)
+def renamed(text: str, names: Mapping[str, str]) -> ast.expr:
+    """A condition with other names of its arguments."""
+    tree = ast.parse(text, mode="eval").body
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            node.id = names.get(node.id, node.id)
+    return tree

@@ -100,6 +100,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("colour of the oil alone", "return oil_colour"),
     ),
     "mixture_viscosity": (
+        ("products for powers", "return oil_viscosity * oil_fraction * water_viscosity * (1 - oil_fraction)"),
         ("arithmetic mean", "return oil_fraction * oil_viscosity + (1 - oil_fraction) * water_viscosity"),
         ("fractions swapped", "return oil_viscosity ** (1 - oil_fraction) * water_viscosity ** oil_fraction"),
         ("two kinds of logarithm", """

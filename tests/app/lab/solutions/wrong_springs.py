@@ -289,6 +289,14 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("rows and columns swapped", changed(CLOTH_LINKS, ".reshape(rows, cols)", ".reshape(cols, rows).T")),
     ),
     "cloth_forces": (
+        ("air drag for the damping of the links", """
+            F = -damping * v
+            for (i, j), d in zip(links, rest_lengths):
+                r = x[j] - x[i]
+                l = np.linalg.norm(r)
+                F[i] += stiffness * (l - d) * r / l
+                F[j] -= stiffness * (l - d) * r / l
+            return F"""),
         ("force on one end only", """
             F = np.zeros_like(x)
             for (i, j), d in zip(links, rest_lengths):

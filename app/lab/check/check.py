@@ -88,11 +88,9 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: 
         answers = answers._replace(error=others[0])
     results = []
     with runners.runner(folder) as runner:
-        programs = {
-            task.name: check_program(folder, runner, task, tasks) if task.check is not None else None for task in tasks
-        }
+        programs = {task.name: check_program(folder, runner, task, tasks) for task in tasks if task.check is not None}
         for task in tasks:
-            program = settled(task.name, programs)
+            program = settled(task.name, programs) if task.name in programs else None
             judged = tuple(
                 check_answer(question, answers.of(task, question), answers.unread_of(task, question))
                 for question in task.questions

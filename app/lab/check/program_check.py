@@ -131,10 +131,10 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
     return Verdict("right")
 
 
-def settled(name: str, verdicts: Mapping[str, Verdict | None]) -> Verdict | None:
+def settled(name: str, verdicts: Mapping[str, Verdict]) -> Verdict:
     """The verdict on a function, given those on all: "waits" if it is right, but calls one that is not."""
     verdict = verdicts[name]
-    if verdict is None or verdict.state != "right":
+    if verdict.state != "right":
         return verdict
     for called in verdict.calls:
         other = verdicts.get(called)

@@ -36,7 +36,7 @@ class CheckedCalls:
         self.edits: list[tuple[Candidate, Callable[..., Any]]] = []
 
     def answer(self, kind: str, file: str, function: str, arguments: list[Any]) -> Any:
-        """The value of a message of the check (`worker.py`). Raises what the student's function raises, and Effect."""
+        """The value of a message of the check (`worker.py`). Raises an error of the student's function, and Effect."""
         if kind == "called":
             names, self.called = sorted(self.called), set()
             return names
@@ -142,9 +142,9 @@ class CheckedCalls:
 
 
 def series(call: Callable[[int, list[Any]], Any], samples: Sequence[list[Any]]) -> list[Any]:
-    """The results of the first calls of a series, at least one. Raises what the first call raises.
+    """Results of the first calls of a series, at least one. Raises the error of the first call.
 
-    call: takes number and arguments. A later call that fails ends the series: it is asked for again, as the first.
+    call: takes number and arguments. A later call that fails ends the series: the lab sends it again, as the first.
     """
     end, found = time.process_time() + SERIES_TIME, list[Any]()
     for i, sample in enumerate(samples):

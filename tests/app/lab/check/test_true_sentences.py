@@ -238,7 +238,6 @@ def test_a_right_function_waits_for_the_one_that_it_calls(tmp_path: Path, name: 
     assert verdicts[name].state == "right"
     assert verdicts[name].calls == ("spring_force",)
     found = settled(name, verdicts)
-    assert found is not None
     assert found.state == "waits"
     assert "it calls spring_force, which is" in found.text
 

@@ -225,7 +225,7 @@ def test_a_worker_tells_its_place_and_time_where_the_system_does_not(tmp_path: P
     places = [message[1:] for message in told if message[0] == "at" and message[2]]
     assert places
     assert {(file, line, name) for file, line, name, *_ in places} <= {("mine.py", 4, "f"), ("mine.py", 5, "f")}
-    used = [message[4] for message in told if message[0] == "at"]
+    used = [message[-1] for message in told if message[0] == "at"]
     assert used == sorted(used)
     assert used[-1] <= told[-1][2]
     assert 0.5 <= told[-1][2] < 5.0

@@ -17,7 +17,18 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, has, parts, reproduces, same, same_shape
+from app.lab.check.comparing import (
+    REPAIR_TOLERANCE,
+    TOLERANCE,
+    call,
+    conform,
+    form_of,
+    has,
+    parts,
+    reproduces,
+    same,
+    same_shape,
+)
 from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.conditions import conditions_of
 from app.lab.check.diagnosis.explanation import Explanation
@@ -302,7 +313,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
         raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
     found = differences.explain_where(compared, names, part_names(student, trials), ())
     if (error := nearly(trials[:RANDOM])) is not None:
-        text = f"At ordinary inputs it is right to within {100.0 * error:.2g} %: a rounded number, or too large a step?"
+        text = f"At ordinary inputs it differs by at most {100.0 * error:.2g} %: a rounded number, or too large a step?"
         return found._replace(text=f"{text} {found.text}")
     if found.mistake:
         return found
@@ -332,7 +343,7 @@ def size_of(sample: Sample) -> int:
 
 
 def nearly(trials: Sequence[Trial]) -> float | None:
-    """The largest relative error of a function that is nearly right everywhere; None for any other."""
+    """The largest relative error of a function that is nearly right at all inputs, and right at not all; else None."""
     worst = 0.0
     for trial in trials:
         for a, b in zip(parts(trial.found), parts(trial.right), strict=True):
@@ -340,7 +351,7 @@ def nearly(trials: Sequence[Trial]) -> float | None:
             if not (np.isfinite(a).all() and np.isfinite(b).all() and np.abs(a - b).max(initial=0.0) <= NEARLY * scale):
                 return None
             worst = max(worst, float(np.abs(a - b).max(initial=0.0) / (scale or 1.0)))
-    return worst
+    return worst if worst > TOLERANCE else None
 
 
 def compared_parts(trials: Sequence[Trial]) -> list[differences.Difference] | None:

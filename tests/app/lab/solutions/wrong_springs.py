@@ -204,6 +204,13 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("Euler", "return x + h * v, v + h * acceleration(x, v)"),
     ),
     "sphere_force": (
+        ("only above counts as outside", """
+            d = x - centre
+            distance = np.linalg.norm(d)
+            if x[2] > centre[2] + radius:
+                return np.zeros(3)
+            n = d / distance
+            return max(stiffness * (radius - distance) - damping * np.dot(v, n), 0) * n"""),
         ("damping that pulls", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0)",
                                        "(stiffness * (radius - l) - damping * (v @ n))")),
         ("normal not unit length", changed(SPHERE, "n = d / l", "n = d")),

@@ -55,6 +55,11 @@ MISTAKES = (
         lambda b, H, o, d, w: b * H / o if b * H <= o * d else d + b * H / w,
     ),
     Mistake(
+        "mean density",
+        "This takes the mean density of a box that is wholly under the surface. Count the oil, then the water.",
+        lambda b, H, o, d, w: b * H / ((o * d + w * (H - d)) / H),
+    ),
+    Mistake(
         "densities swapped", "The densities of oil and water are swapped.", lambda b, H, o, d, w: draft(b, H, w, d, o)
     ),
     Mistake(

@@ -65,6 +65,11 @@ MISTAKES = (
         at(lambda x, v, level, g: (v[2] + np.sqrt(v[2] ** 2 + 4 * g * (x[2] - level))) / (2 * g)),
     ),
     Mistake(
+        "brackets of the divisor",
+        "The divisor is g, as 2 cancels: t = (v_z + sqrt(v_z^2 + 2 g h))/g. This divides by 2 and multiplies by g.",
+        at(lambda x, v, level, g: root()(x, v, level, g) * g * g / 2),
+    ),
+    Mistake(
         "start velocity forgotten",
         "The drop falls as if it had no velocity upwards.",
         at(lambda x, v, level, g: np.sqrt(2 * (x[2] - level) / g)),

@@ -49,6 +49,16 @@ def area(vertices, faces):
 
 
 MISTAKES = (
+    Mistake(
+        "products of coordinates",
+        "This adds x y z of each point. Go through the faces, with the corners vertices[face[0]] and so on.",
+        lambda v, f: v.prod(axis=1).sum() / 6,
+    ),
+    Mistake(
+        "product by components",
+        "a * b * c multiplies component by component. a . (b x c) is np.dot(a, np.cross(b, c)).",
+        lambda v, f: v[f].prod(axis=1).sum() / 6,
+    ),
     Mistake("factor 1/6 wrong", "A tetrahedron has a sixth of the box: divide by 6.", lambda v, f: triple(v, f).sum()),
     Mistake(
         "factor 1/6 wrong", "A tetrahedron has a sixth of the box, not a third.", lambda v, f: triple(v, f).sum() / 3

@@ -30,12 +30,13 @@ def inputs(rng):
     return corners @ shape.T + rng.uniform(1.0, 3.0, 3), np.array(faces)
 
 
-# A tetrahedron, and the same one 100 m away.
-TETRAHEDRON = (
-    np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-    np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]),
-)
-EXAMPLES = (TETRAHEDRON, (TETRAHEDRON[0] + np.array([100.0, 0.0, 0.0]), TETRAHEDRON[1]))
+def tetrahedron(away):
+    """The corner of a cube of 1 m, `away` [m] from the origin."""
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    return corners + np.array([away, 0.0, 0.0]), np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+EXAMPLES = (tetrahedron(0.0), tetrahedron(100.0))
 
 
 def triple(vertices, faces):

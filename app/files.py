@@ -7,11 +7,14 @@ from sim.files import draft_of
 from sim.validation import argument_error
 
 
-def check_out_file(option: str, path: Path, *names: str) -> None:
-    """Raises ValueError, naming the option, where `path` cannot be written.
+def check_out_file(option: str, path: Path, *names: str, endings: tuple[str, ...]) -> None:
+    """Raises ValueError, naming the option, where `path` cannot be written, or has not the ending of its format.
 
-    names: files that the command also makes in the folder of `path`.
+    names: files that the command also makes in the folder of `path`. endings: as ".html"; with another one the file may
+    be somebody's work of another kind.
     """
+    if path.suffix.lower() not in endings:
+        raise argument_error(option, str(path), f"a name that ends in {' or '.join(endings)}")
     target = Path(os.path.realpath(path))
     try:
         if not target.parent.is_dir():

@@ -23,10 +23,12 @@ STYLES = {
     "right": "green",
     "wrong": "red",
     "failed": "red",
+    "waits": "yellow",
     "not checked": "yellow",
     "incomplete": "yellow",
     "not begun": "dim",
 }
+ENDINGS = {"json": (".json",), "csv": (".csv",), "report": (".html", ".htm")}
 ITEM_WIDTH = 7  # [characters]
 STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
 FREQUENT = 3  # mistakes of a class that are printed
@@ -49,7 +51,7 @@ def check(
     """
     for option, path in out.items():
         if path is not None and str(path) != "-":
-            check_out_file(f"--{option}", path)
+            check_out_file(f"--{option}", path, endings=ENDINGS[option])
     found = load_tasks(*tasks)
     curves, runners = out["report"] is not None, Runners()
     with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
@@ -97,7 +99,7 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     for entry in result.tasks:
         for text in entry.missing:
             console.print()
-            text_tables.say(f"{entry.task.item}, still to do: {text}")
+            text_tables.say(f"{entry.task.item} {entry.task.name}, still to do: {text}")
     rest = () if everything else [entry.task.optional for entry in result.tasks if entry.state == "not begun"]
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     console.print()

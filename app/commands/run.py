@@ -62,9 +62,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     """
     check_number("--seconds", seconds, "s", 0.0, MAX_DURATION, above=True)
     check_number("--rate", rate, "Hz", 0.0, MAX_RATE, above=True)
-    if out.suffix != ".npz":
-        raise argument_error("--out", str(out), "a name that ends in .npz")
-    check_out_file("--out", out)
+    check_out_file("--out", out, endings=(".npz",))
     running: Scene[Any, Any, Any] = scene.make(params)
     if running.note:
         # A file would not show that another integrator ran than the requested one.

@@ -2,6 +2,7 @@
 
 Beside the reference solution, such a file has
 - `inputs(rng)`, required: one set of arguments, drawn from a numpy generator. Functions may be among them.
+- `EXAMPLES`, a tuple of further arguments: the numbers of the scenes, and inputs at which the task's text draws a line.
 - `MISTAKES`, a tuple of `Mistake`: wrong solutions that are recognised by what they return.
 - `ALTERNATIVES`, a tuple of functions that are right as well, though they return something else.
 - `behaviour(student)`: calls the student's function and raises `Wrong` where it does not behave as it must.

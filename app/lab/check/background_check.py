@@ -144,5 +144,5 @@ def main() -> None:
             if runner is None or runner.folder != Path(folder).resolve():
                 opened.close()
                 runner = opened.enter_context(Runner(Path(folder)))
-            verdict = check_program(Path(folder), runner, tasks[name])
+            verdict = check_program(Path(folder), runner, tasks[name], tasks.values())
             print(msgspec.json.encode(verdict).decode(), flush=True)

@@ -5,9 +5,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.lab.check.program_check import Points, Verdict, check_program, draw
+from app.lab.check.program_check import Points, Verdict, check_program, draw, settled
 from app.lab.course.answer_check import AnswerVerdict, check_answer
-from app.lab.course.answers import FILE, Answers, read_answers
+from app.lab.course.answers import FILE, Answers, read_answers, strangers
 from app.lab.course.folder import check_is_folder
 from app.lab.course.task import Task
 from app.lab.process.runners import Runners
@@ -26,10 +26,10 @@ class TaskResult:
     def state(self) -> str:
         """The first of these states among the parts of the task.
 
-        "failed", "wrong", "not checked", "not begun", "incomplete", "right".
+        "failed", "wrong", "waits", "not checked", "not begun", "incomplete", "right".
         """
         states = [*([self.program.state] if self.program else []), *(answer.state for answer in self.answers)]
-        for state in ("failed", "wrong", "not checked"):
+        for state in ("failed", "wrong", "waits", "not checked"):
             if state in states:
                 return state
         open_parts = states.count("not begun")
@@ -41,7 +41,7 @@ class TaskResult:
         texts, program = [], self.program
         if program is not None and program.file:
             texts.append(program.sentence)
-        elif program is not None and program.state in ("wrong", "failed", "not checked"):
+        elif program is not None and program.state in ("wrong", "failed", "waits", "not checked"):
             texts.append(f"{program.place or self.task.file} {self.task.name}: {program.sentence}")
         texts += [f"{FILE} {self.task.name}.{a.question.key}: {a.text}" for a in self.answers if a.state == "wrong"]
         return tuple(texts)
@@ -84,11 +84,17 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: 
     check_is_folder(folder)
     began = time.monotonic()
     answers = read_answers(folder)
+    if not answers.error and (others := strangers(answers, tasks)):
+        answers = answers._replace(error=others[0])
     results = []
     with runners.runner(folder) as runner:
+        programs = {task.name: check_program(folder, runner, task, tasks) for task in tasks if task.check is not None}
         for task in tasks:
-            program = check_program(folder, runner, task) if task.check is not None else None
-            judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)
-            begun = program is not None and program.state in ("right", "wrong")
+            program = settled(task.name, programs) if task.name in programs else None
+            judged = tuple(
+                check_answer(question, answers.of(task, question), answers.unread_of(task, question))
+                for question in task.questions
+            )
+            begun = program is not None and program.state in ("right", "wrong", "waits")
             results.append(TaskResult(task, program, judged, draw(runner, task) if curves and begun else None))
     return FolderResult(folder, answers, tuple(results), time.monotonic() - began)

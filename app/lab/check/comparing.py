@@ -15,6 +15,17 @@ REPAIR_TOLERANCE = 1e-5  # the same, for what an edit makes right: a small part 
 FORM_TOLERANCE = 1e-9  # of the largest value of a student's result, within which a form agrees
 SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
+# Cures for results of some types.
+CURES = {
+    "generator": ": write return in place of yield, or list(...) around the brackets",
+    "map": ": write list(...) around map(...)",
+    "zip": ": write list(...) around zip(...)",
+    "coroutine": ": leave out async",
+    "function": ": call the function that it returns",
+    "builtin_function_or_method": ": call the function that it returns",
+    "dict": ": leave out the names",
+}
+
 
 def call(function: Any, arguments: tuple[Any, ...]) -> Any:
     """The function's value at copies of the arguments, without numpy's warnings."""
@@ -25,10 +36,11 @@ def call(function: Any, arguments: tuple[Any, ...]) -> Any:
 def conform(value: Any, like: Any) -> Any:
     """`value` in the form of a reference result: a float, an array of float64 or a tuple. Raises Wrong otherwise."""
     if value is None:
-        raise Wrong("it returns nothing: the last line must be return ...", "returns nothing")
+        raise Wrong("it returns nothing here: each way through the function must end with a return", "returns nothing")
     if isinstance(value, Foreign | str):
         found = value.type_name if isinstance(value, Foreign) else "text"
-        raise Wrong(f"it returns a value of type {found}; expected {form_of(like)}", "wrong type")
+        cure = CURES.get(found, "")
+        raise Wrong(f"it returns a value of type {found}; expected {form_of(like)}{cure}", "wrong type")
     if isinstance(like, tuple):
         if isinstance(value, np.ndarray):
             value = list(value) if value.ndim else [value]
@@ -98,7 +110,8 @@ def reproduces(form: Any, found: Any, right: Any) -> bool:
         finite = np.isfinite(b)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
             return False
-        is_single = np.array_equal(b[finite].astype(np.float32), b[finite])
+        with np.errstate(over="ignore"):
+            is_single = np.array_equal(b[finite].astype(np.float32), b[finite])
         tolerance = SINGLE_TOLERANCE if is_single else FORM_TOLERANCE
         rounding = 1e-12 * np.abs(c[np.isfinite(c)]).max(initial=0.0)
         scale = tolerance * np.abs(b[finite]).max(initial=0.0) + rounding

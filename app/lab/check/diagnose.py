@@ -1,36 +1,54 @@
 """Names the mistake of a function that differs from the reference.
 
 A sentence about the function states a form of it: a typical mistake of the task, terms of a sum, the equations of a
-step, an edit of the reference. It is shown only if that form reproduces the student's results, also at fresh inputs. An
-edit of the student's own function is shown if it has the right results there. If nothing passes, the text names the
-inputs or parts at which the function differs, with the values at one input.
+step. It is shown only if that form reproduces the student's results at all inputs. An edit of the student's own
+function is shown if it passes everything that decides whether a function is right. If nothing passes, the text names
+the inputs or parts at which the function differs, with the values at the smallest such input.
 """
 
+import ast
 import contextlib
+import inspect
 import itertools
 import re
-from collections.abc import Callable, Iterator, Sequence
+import textwrap
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, has, parts, reproduces, same, same_shape
+from app.lab.check.comparing import (
+    REPAIR_TOLERANCE,
+    TOLERANCE,
+    call,
+    conform,
+    form_of,
+    has,
+    parts,
+    reproduces,
+    same,
+    same_shape,
+)
 from app.lab.check.diagnosis import differences
-from app.lab.check.diagnosis.edits import explain_edit, explain_repair
+from app.lab.check.diagnosis.conditions import conditions_of
 from app.lab.check.diagnosis.explanation import Explanation
 from app.lab.check.diagnosis.steps import explain_step
 from app.lab.check.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
-from app.lab.check.student_function import TASK_LIMIT, StudentFunction, Trial
+from app.lab.check.diagnosis.units import clashes, units_of
+from app.lab.check.inputs import RANDOM, SEED, Sample
+from app.lab.check.python_errors import in_plain_words
+from app.lab.check.student_function import TASK_LIMIT, EditedFunction, StudentFunction, Trial
 from app.lab.checking import Wrong
 from app.lab.process.runner import RunError
 
-SEED = 20150130
-FRESH_SEED = 20261127
-FRESH = 24  # fresh inputs, not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find enough
+UNUSED_SAMPLES = 20  # inputs that are exchanged with each other, for an argument without effect
 SMALLER = 1e-3  # of an argument, at which a result that seems not to depend on it is tried too
 MAX_REPAIRS = 20  # that are right at one input and are tried at the others
+EDITS_LIMIT = 2.0  # [s] for all edits of a kind
+MANY = 4  # further texts that may stand at a place, from where on what stands there has no effect
+NEARLY = 0.05  # of the largest value of a result, within which it is nearly right
 UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results without a test of behaviour
 OTHER_SHAPE = "for other numbers of points its results have the wrong shape"
 STEP_PARTS = ("new position", "new velocity")
@@ -41,16 +59,16 @@ PREFIXES = {"k": 1e-3, "m": 1e3, "M": 1e-6}
 def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
     """The mistake of a function that differs from the reference at some of these inputs. Raises RunError or Wrong."""
     task = student.task
-    for trial in trials:
+    samples = [trial.sample for trial in trials]
+    first = next(i for i, trial in enumerate(trials) if not trial.is_right)
+    for i, trial in enumerate(trials):
         if [(p.ndim, p.shape[1:]) for p in parts(trial.found)] != [(p.ndim, p.shape[1:]) for p in parts(trial.right)]:
-            return Wrong(f"it returns {form_of(trial.found)}; expected {form_of(trial.right)}", "wrong shape")
-    rng = np.random.default_rng(FRESH_SEED)
-    fresh = [student.trial(tuple(task.check.inputs(rng))) for _ in range(FRESH)]  # type: ignore[union-attr]
-    every = [*trials, *fresh]
-    has_numbers = any(has(np.isfinite, trial.found) for trial in every)  # without any, too many forms agree with it
+            text = f"it returns {form_of(trial.found)}; expected {form_of(trial.right)}"
+            return with_repair(student, samples, Wrong(text, "wrong shape"), i)
+    has_numbers = any(has(np.isfinite, trial.found) for trial in trials)  # without any, too many forms agree with it
 
     def is_stated(form: Callable[..., Any] | None) -> bool:
-        return form is not None and has_numbers and all(has_form(student, form, trial) for trial in every)
+        return form is not None and has_numbers and all(has_form(student, form, trial) for trial in trials)
 
     why = explain(student)
     if why is not None:
@@ -58,31 +76,51 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
         form = next(filter(is_stated, forms), None)
         why = None if form is None else why._replace(form=form)
     unused = why.mistake.removesuffix(" not used") if why is not None and why.text.startswith(IGNORED) else ""
-    if unused in task.arguments and not ignores(student, every, task.arguments.index(unused)):
+    if unused in task.arguments and not ignores(student, trials, task.arguments.index(unused)):
         why = None
-    if rounds_down(student) and (mended := repair(student, every, of="//")) is not None:
-        return wrong_of(mended)
+    if (trap := repair(student, samples, first, "traps")) is not None:
+        return wrong_of(trap)
     for mistake in getattr(task.check, "MISTAKES", ()):
         if is_stated(mistake.function):
             return Wrong(mistake.hint, mistake.name, why.equations if why else (), mistake.function)
+    # Of a step with a single wrong equation that equation says more than brackets that happen to mend it.
+    is_clear = (
+        why is not None and hasattr(task.check, "METHOD") and sum(bool(line.right) for line in why.equations) == 1
+    )
+    if not is_clear and (cause := repair(student, samples, first, "causes")) is not None:
+        return wrong_of(cause._replace(equations=why.equations if why else ()))
     if why is not None and not why.is_vague:
-        return wrong_of(in_units(student, why, every))
+        return wrong_of(in_units(student, why, trials))
+    odd = next((error for trial in trials if (error := student.not_finite(trial)) is not None), None)
+    mended = repair(student, samples, first, "slips", "more slips")
+    if odd is not None and mended is not None:
+        return Wrong(f"{odd}. {mended.text}", odd.mistake, line=mended.line)
     return wrong_of(
-        repair(student, every)
+        mended
         or why
-        or in_special_case(student, every)
-        or explain_edit(task.function, task.arguments, is_stated)
-        or unused_arguments(student, every)
-        or elsewhere(student, every)
+        or (None if odd is None else Explanation(odd.mistake, str(odd)))
+        or in_special_case(student, trials)
+        or unused_arguments(student, trials)
+        or elsewhere(student, trials)
     )
 
 
-def rounds_down(student: StudentFunction) -> bool:
-    """True if the student's file uses //, which is easily mistaken for division."""
-    try:
-        return b"//" in (student.runner.folder / student.task.file).read_bytes()
-    except OSError:
-        return False
+def with_repair(student: StudentFunction, samples: Sequence[Sample], error: Wrong, first: int | None = None) -> Wrong:
+    """A result of another form, with an edit that makes the function right, if there is one.
+
+    first: number of its input; None for the last one.
+    """
+    found = repair(
+        student, samples, last_input(student, samples) if first is None else first, "traps", "causes", "slips"
+    )
+    if found is None:
+        return error
+    return Wrong(f"{error}. {found.text}", error.mistake, line=found.line)
+
+
+def last_input(student: StudentFunction, samples: Sequence[Sample]) -> int:
+    """Number of the last input that was tried."""
+    return next(i for i, sample in enumerate(samples) if sample is student.sample)
 
 
 def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]) -> Explanation:
@@ -108,7 +146,7 @@ def has_form(student: StudentFunction, form: Callable[..., Any], trial: Trial) -
     """True if the student's result at an input is that of a form."""
     try:
         value = student.normalised(conform(call(form, trial.sample), student.reference(*trial.sample)))
-    except Exception:  # an edit has broken the form
+    except Exception:  # an input that breaks the form
         return False
     return reproduces(value, trial.found, trial.right)
 
@@ -132,52 +170,80 @@ def explain(student: StudentFunction) -> Explanation | None:
         return None
 
 
-def repair(student: StudentFunction, trials: Sequence[Trial], of: str = "") -> Explanation | None:
-    """The edit of the student's own function that makes it right at all inputs, or None. of: text that it removes."""
-    runner = student.runner
-    calls_back = any(callable(argument) for argument in trials[0].sample)  # for each edit: too slow on a busy machine
-    if calls_back or runner.effort - student.effort > TASK_LIMIT / 2.0:
+def repair(student: StudentFunction, samples: Sequence[Sample], first: int, *kinds: str) -> Explanation | None:
+    """The edit of the student's own function that makes it right, or None.
+
+    first: number of an input at which the function is wrong. kinds: of edits, of `worker.EDITS`.
+    """
+    runner, task, sample = student.runner, student.task, samples[first]
+    calls_back = any(callable(argument) for argument in sample)  # for many edits: too slow on a busy machine
+    if runner.effort - student.effort > TASK_LIMIT / 2.0:
         return None
-    first = next(trial for trial in trials if not trial.is_right)
-    others = [trial for trial in trials if trial is not first]
-    before = runner.effort
+    units = units_of(task.function.__doc__ or "", task.arguments)
+    most = clashes(ast.parse(textwrap.dedent(inspect.getsource(task.function))), units)
+    conditions = conditions_of(task.function)
+    before, right = runner.effort, student.normalised(student.reference(*sample))
     try:
-        return first_repair(student, first, others, of)
+        for kind in kinds:
+            if calls_back and kind not in ("traps", "causes"):
+                return None
+            try:
+                edits = student.ask("edits", kind, task.arguments, conditions, sample, time_limit=EDITS_LIMIT)
+                right_ones = [number for number, value in edits if is_repaired(student, value, sample, right)]
+                words = student.ask("words", right_ones, list(units.items()), most)
+            except RunError:  # an edit that does not end
+                continue
+            passing = (
+                edit
+                for number, _, *edit in sorted(words, key=lambda edit: edit[1])[:MAX_REPAIRS]
+                if passes(EditedFunction(student, number), samples)
+            )
+            if (edit := next(passing, None)) is None:
+                continue
+            # Of a text that is overwritten, say, anything may stand in its place.
+            place = [(before, line) for before, _, line in edit[-1]]
+            others = [edit for edit in passing if [(before, line) for before, _, line in edit[-1]] == place]
+            if kind != "more slips" or len(others) < MANY:
+                return explain_repair(*edit)
+        return None
     finally:
         student.effort += runner.effort - before  # the student's function is not charged for this
 
 
-def first_repair(student: StudentFunction, first: Trial, others: Sequence[Trial], of: str) -> Explanation | None:
-    """As `repair`. first: an input at which the function is wrong."""
-    task, runner = student.task, student.runner
+def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -> Explanation:
+    """The words for an edit that makes a student's function right. shown: as of `Edit`."""
+    before, _, line = shown[0]
+    if condition:
+        how = f"It is right if the condition {before} in line {line} {condition} holds."
+    elif cause.endswith("it is right."):
+        return Explanation("", cause, line=line)
+    else:
+        parts = [
+            f"{f'with {after} in place of' if after else 'without'} {before} in line {line}"
+            for before, after, line in shown
+        ]
+        how = f"{', and '.join(parts)} it is right."
+    return Explanation("", f"{cause} {how[0].upper()}{how[1:]}".strip(), line=line)
 
-    def is_right(value: Any, trial: Trial) -> bool:
-        try:
-            value = student.normalised(conform(value, student.reference(*trial.sample)))
-            return same(value, trial.right, REPAIR_TOLERANCE)
-        except (Wrong, ValueError, IndexError):
+
+def is_repaired(student: StudentFunction, value: Any, sample: Sample, right: Any) -> bool:
+    """True if a value is the right one at an input."""
+    try:
+        value = student.normalised(conform(value, student.reference(*sample)))
+        return same(value, right, REPAIR_TOLERANCE)
+    except (Wrong, ValueError, IndexError):
+        return False
+
+
+def passes(function: StudentFunction, samples: Sequence[Sample]) -> bool:
+    """True if a function passes everything that decides whether it is right, within narrower limits."""
+    try:
+        if not all(same(trial.found, trial.right, REPAIR_TOLERANCE) for trial in function.trials(samples)):
             return False
-
-    def results(number: int) -> Iterator[tuple[Any, Trial]]:
-        return ((runner.edited(task.file, task.name, number, *trial.sample), trial) for trial in others)
-
-    for far in (False,) if of else (False, True):
-        try:
-            edits = runner.edits(task.file, task.name, *first.sample, far=far)
-        except RunError:  # an edit that does not end
-            continue
-        near = [e for e in edits if (not of or (of in e[1] and of not in e[2])) and is_right(e[-1], first)]
-        for number, *edit, _ in sorted(near, key=length_of_change)[:MAX_REPAIRS]:
-            with contextlib.suppress(RunError):
-                if all(is_right(value, trial) for value, trial in results(number)):
-                    return explain_repair(edit)
-    return None
-
-
-def length_of_change(edit: Sequence[Any]) -> tuple[int, int]:
-    """Sort key of edits: the change in length of an expression."""
-    number, before, after, *_ = edit
-    return abs(len(after) - len(before)), number
+        behave(function)
+    except (RunError, Wrong, ValueError, IndexError):
+        return False
+    return not hasattr(function.task.check, "METHOD") or explain(function) is None
 
 
 def unused_arguments(student: StudentFunction, trials: Sequence[Trial]) -> Explanation | None:
@@ -193,17 +259,21 @@ def unused_arguments(student: StudentFunction, trials: Sequence[Trial]) -> Expla
 def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
     """True if the student's result never depends on argument `i`, though the reference does.
 
-    Each pair of inputs is tried, as a force may be 0 at many of them, and then much smaller numbers, as all of the
+    Pairs of inputs are tried, as a force may be 0 at many of them, and then much smaller numbers, as all of the
     task's may be so large that a term is gone; False for a function that is too slow for that.
     """
     changed_reference = False
-    pairs = ((one, other.sample[i]) for one, other in itertools.product(trials, repeat=2))
-    smaller = ((one, SMALLER * one.sample[i]) for one in trials if np.asarray(one.sample[i]).dtype.kind == "f")
+    some = trials[:UNUSED_SAMPLES]
+    pairs = ((one, other.sample[i]) for one, other in itertools.product(some, repeat=2))
+    smaller = ((one, SMALLER * one.sample[i]) for one in some if np.asarray(one.sample[i]).dtype.kind == "f")
     for one, value in itertools.chain(pairs, smaller):
         sample = (*one.sample[:i], value, *one.sample[i + 1 :])
         if np.shape(one.sample[i]) != np.shape(value):
             continue
-        if same(one.right, student.normalised(student.reference(*sample))):
+        try:
+            if same(one.right, student.normalised(student.reference(*sample))):
+                continue
+        except (ValueError, IndexError):  # arguments that do not belong together
             continue
         if student.runner.effort - student.effort > TASK_LIMIT / 2.0:
             return False
@@ -212,7 +282,7 @@ def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
             found = student.trial(sample).found
         except (RunError, Wrong):  # as of an input that the task does not have
             return False
-        if not same(found, one.found):
+        if not same(found, one.found, 0.0):
             return False
     return changed_reference
 
@@ -227,26 +297,61 @@ def in_special_case(student: StudentFunction, trials: Sequence[Trial]) -> Explan
 
 
 def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
-    """The place where a function differs, after a fault of its behaviour. Raises RunError or Wrong."""
-    check = student.task.check
-    wrong = next(trial for trial in trials if not trial.is_right)
+    """The place where a function differs, a fault of its behaviour, or the smallest input. Raises RunError or Wrong."""
+    check, names = student.task.check, student.task.arguments
+    wrong = min((trial for trial in trials if not trial.is_right), key=lambda trial: size_of(trial.sample))
     compared = compared_parts(trials)
     if text := getattr(check, "contrast", lambda *_: "")(wrong.found, wrong.right, *wrong.sample):
-        found = Explanation("", text)
-    elif compared is None:
+        try:
+            behave(student)
+        except Wrong as failed:
+            if failed.mistake and failed.mistake not in UNFIT:
+                return Explanation(failed.mistake, f"{failed} {text}")
+        return Explanation("", text)
+    if compared is None:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
         raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
-    else:
-        found = differences.explain_where(compared, student.task.arguments, part_names(student, trials), ())
+    found = differences.explain_where(compared, names, part_names(student, trials), ())
+    if (error := nearly(trials[:RANDOM])) is not None:
+        text = f"At ordinary inputs it differs by at most {100.0 * error:.2g} %: a rounded number, or too large a step?"
+        return found._replace(text=f"{text} {found.text}")
     if found.mistake:
         return found
     try:
         behave(student)
-    except Wrong as error:
-        if error.mistake not in UNFIT:
-            said = str(error)
-            return Explanation(error.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {found.text}")
+    except Wrong as failed:
+        if failed.mistake not in UNFIT:
+            said = str(failed)
+            return Explanation(
+                failed.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {shown_last(student) or found.text}"
+            )
     return found
+
+
+def shown_last(student: StudentFunction) -> str:
+    """The last call with its result and the right one, if they differ; otherwise ""."""
+    if student.last is None or not same_shape(student.last.found, student.last.right):
+        return ""
+    last = differences.compared(student.last.sample, parts(student.last.found), parts(student.last.right))
+    names = part_names(student, [student.last])
+    return differences.example(last, student.task.arguments, names) if last.is_wrong else ""
+
+
+def size_of(sample: Sample) -> int:
+    """Count of the numbers of an input."""
+    return sum(np.size(value) for value in sample if not callable(value))
+
+
+def nearly(trials: Sequence[Trial]) -> float | None:
+    """The largest relative error of a function that is nearly right at all inputs, and right at not all; else None."""
+    worst = 0.0
+    for trial in trials:
+        for a, b in zip(parts(trial.found), parts(trial.right), strict=True):
+            scale = np.abs(b).max(initial=0.0)
+            if not (np.isfinite(a).all() and np.isfinite(b).all() and np.abs(a - b).max(initial=0.0) <= NEARLY * scale):
+                return None
+            worst = max(worst, float(np.abs(a - b).max(initial=0.0) / (scale or 1.0)))
+    return worst if worst > TOLERANCE else None
 
 
 def compared_parts(trials: Sequence[Trial]) -> list[differences.Difference] | None:
@@ -271,3 +376,14 @@ def behave(student: StudentFunction) -> None:
         behaviour(student)
     except (ValueError, IndexError):
         raise Wrong(OTHER_SHAPE, "wrong shape") from None
+
+
+def error_with_repair(student: StudentFunction, samples: Sequence[Sample], error: RunError) -> RunError:
+    """An error of Python, with an edit that makes the function right, if there is one; another error as it is."""
+    if error.kind != "raised" or error.loading:
+        return error
+    first = last_input(student, samples)
+    with contextlib.suppress(RunError, Wrong):
+        if (found := repair(student, samples, first, "traps", "causes", "slips")) is not None:
+            return RunError(error.kind, f"{error.text.rstrip('.')}. {found.text}", error.file, found.line or error.line)
+    return RunError(error.kind, in_plain_words(error.text), error.file, error.line)

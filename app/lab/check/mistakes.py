@@ -1,5 +1,6 @@
 """The mistakes of a class, and the progress of each student, for the teacher's page and the terminal."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -9,9 +10,12 @@ from sim.parameters import in_words
 
 # States of a task, and the words for how many tasks have it.
 STATES = {
-    "right": "right", "wrong": "wrong", "failed": "does not run", "incomplete": "not complete",
-    "not checked": "not checked", "not begun": "not begun",
+    "right": "right", "wrong": "wrong", "failed": "does not run", "waits": "waits for another",
+    "incomplete": "not complete", "not checked": "not checked", "not begun": "not begun",
 }  # fmt: skip
+
+
+EXAMPLE = re.compile(r"(With .* it|It) returns |Right at \d+")
 
 
 class ClassMistake(NamedTuple):
@@ -42,12 +46,18 @@ def mistakes_of(result: TaskResult) -> list[tuple[str, str]]:
     if program is not None and program.state == "failed":
         found.append((program.file or f"{task.item} {task.name}", "does not run"))
     elif program is not None and program.state == "wrong":
-        found.append((f"{task.item} {task.name}", program.mistake or program.text))
+        found.append((f"{task.item} {task.name}", program.mistake or kind_of(program.text)))
     return found + [
         (f"{task.item} {in_words(answer.question.key)}", f"{answer_text(answer.answer)}: {answer.text}")
         for answer in result.answers
         if answer.state == "wrong" and answer.question.right is not None
     ]
+
+
+def kind_of(text: str) -> str:
+    """The first sentence about a function, without the numbers of one student's case."""
+    first = text.partition(". ")[0]
+    return "another result" if EXAMPLE.match(first) else first
 
 
 def answer_text(answer: object) -> str:

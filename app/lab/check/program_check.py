@@ -1,19 +1,25 @@
-"""Judges a student's function: against the reference at random inputs, then by its behaviour.
+"""Judges a student's function: against the reference at many inputs (`inputs.py`), then by its behaviour.
 
 A wrong function is compared with the typical mistakes of its task, then analysed by its structure
 (`diagnosis/`): the tableau of a step, the terms of a sum. Any function can leave an argument unused.
 """
 
+import contextlib
 import dataclasses
+import inspect
+import textwrap
 import time
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from app.lab.check.comparing import call, same
-from app.lab.check.diagnose import SEED, behave, diagnosed, explain
+from app.lab.check.diagnose import behave, diagnosed, error_with_repair, explain, with_repair
 from app.lab.check.diagnosis.effects import EFFECTS
 from app.lab.check.diagnosis.explanation import Equation
+from app.lab.check.inputs import inputs_of
+from app.lab.check.python_errors import in_plain_words
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong
 from app.lab.course.task import Task
@@ -22,18 +28,18 @@ from app.lab.student.source import read_source
 
 MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
 RETRY_INTERVAL = 0.5  # [s] between two of them
-SAMPLES = 12  # random inputs
-TWICE = 3  # of them are tried twice
+TWICE = 3  # of the inputs are tried twice
 
 
 @dataclasses.dataclass(frozen=True)
 class Verdict:
     """Result of the check of one function.
 
-    state: "not begun", "right", "wrong", "failed" (no result), or "not checked" (the machine is too busy). mistake: the
-    name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
-    it is unknown. file: the file that does not run, or "". equations: of a wrong function, beside the
-    right ones.
+    state: "not begun", "right", "wrong", "failed" (no result), "not checked" (the machine is too busy), or "waits"
+    (right, but it calls a function of the course that is not). calls: the functions of the course that it calls.
+    mistake: the name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it:
+    "rope.py:17"; "" if it is unknown. file: the file that does not run, or "". equations: of a wrong function, beside
+    the right ones.
     """
 
     state: str
@@ -42,6 +48,7 @@ class Verdict:
     place: str = ""
     file: str = ""
     equations: tuple[Equation, ...] = ()
+    calls: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -70,8 +77,15 @@ class Points:
     student: np.ndarray | None
 
 
-def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
-    """Judge the student's function of a programming task."""
+def check_program(folder: Path, runner: Runner, task: Task, tasks: Iterable[Task] = ()) -> Verdict:
+    """Judge the student's function of a programming task.
+
+    tasks: their solutions stand in for the student's functions that this one calls.
+    """
+    runner.course = {
+        other.name: textwrap.dedent(inspect.getsource(other.function))
+        for other in tasks if other.check is not None and other.name != task.name
+    }  # fmt: skip
     try:
         source = read_source((folder / task.file).read_bytes())
     except OSError:  # the call says what is wrong with the file
@@ -103,13 +117,34 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
         place = place_of(error.file, error.line)
         if error.kind == BUSY:
             return not_checked(error.text)
+        if error.kind == "missing" and error.text == f"there is no function {task.name}":
+            return Verdict("not begun")
         if error.kind in EFFECTS:
             return Verdict("wrong", error.text, error.kind, place)
-        return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
+        text = in_plain_words(error.text) if error.loading else error.text
+        return Verdict("failed", text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
         place = place_of(task.file, error.line or line)
         return Verdict("wrong", str(error), error.mistake, place, equations=error.equations)
+    with contextlib.suppress(RunError):
+        return Verdict("right", calls=tuple(str(name) for name in student.ask("called")))
     return Verdict("right")
+
+
+def settled(name: str, verdicts: Mapping[str, Verdict]) -> Verdict:
+    """The verdict on a function, given those on all: "waits" if it is right, but calls one that is not."""
+    verdict = verdicts[name]
+    if verdict.state != "right":
+        return verdict
+    for called in verdict.calls:
+        other = verdicts.get(called)
+        if other is not None and other.state not in ("right", "not checked"):
+            what = "is not written yet" if other.state == "not begun" else "is wrong"
+            text = f"It is right, but it calls {called}, which {what}: mend that first"
+            return dataclasses.replace(
+                verdict, state="waits", text=text.replace("mend", "write") if "yet" in what else text
+            )
+    return verdict
 
 
 def place_of(file: str, line: int | None) -> str:
@@ -134,10 +169,17 @@ def draw(runner: Runner, task: Task) -> Points | None:
 
 
 def compare(student: StudentFunction) -> None:
-    """Compare with the reference at random inputs. Raises RunError or Wrong."""
+    """Compare with the reference at all inputs. Raises RunError or Wrong."""
     check = student.task.check
-    rng = np.random.default_rng(SEED)
-    trials = [student.trial(tuple(check.inputs(rng)), twice=i < TWICE) for i in range(SAMPLES)]  # type: ignore[union-attr]
+    samples = inputs_of(check, student.task.name)
+    student.takes_all = True
+    try:
+        trials = list(student.trials(samples, TWICE))
+    except RunError as error:
+        raise error_with_repair(student, samples, error) from None
+    except Wrong as error:
+        raise with_repair(student, samples, error) from None
+    student.takes_all = False
     if all(trial.is_right for trial in trials):
         return
     alternatives = getattr(check, "ALTERNATIVES", ())

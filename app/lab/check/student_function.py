@@ -1,20 +1,23 @@
 """A student's function for checks."""
 
+import contextlib
 import itertools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from app.lab.check.comparing import call, conform, has, same
+from app.lab.check.diagnosis.units import units_of
 from app.lab.checking import Wrong
 from app.lab.course.task import Task
 from app.lab.process.call_limit import MAX_WAIT
 from app.lab.process.runner import BUSY, RunError, Runner
 
 TASK_LIMIT = 10.0  # [s] of processor time for all calls of one task
-NO_SPECIAL_CASE = ": look for a division by 0 or the root of a negative number"
+FIRST_SERIES, SERIES_GROWTH = 1, 8  # numbers of inputs: a function that is wrong at the first needs no others
+NO_SPECIAL_CASE = ": look for a division by 0, the root of a negative number, or entries that stay NaN"
 
 
 class Trial(NamedTuple):
@@ -38,49 +41,129 @@ class StudentFunction:
         self.runner = runner
         self.task = task
         self.is_watched = is_watched
-        self.twice = False  # each call is compared with a second one
         self.started, self.effort = time.monotonic(), runner.effort
-        self.like: Any = None  # a result of the reference solution
+        self.last: Trial | None = None  # the last call with a result
+        self.is_warm = False  # after a first call
+        self.takes_all = False  # also results that are not finite
+        self.sample: tuple[Any, ...] = ()  # of the last trial
 
     def __call__(self, *arguments: Any) -> Any:
         """The result, in the form of the reference's. Raises RunError or Wrong."""
+        return next(self.results([arguments]))[0]
+
+    def results(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> Iterator[tuple[Any, Any]]:
+        """The result of each input, in the form of the reference's, beside that one. Raises RunError or Wrong.
+
+        twice: number of the first inputs whose results are compared with a second call.
+        """
+        done, ahead = 0, FIRST_SERIES
+        while done < len(samples):
+            self.check_time()
+            part, before = samples[done : done + ahead], self.runner.effort
+            self.sample = part[0]  # a call that fails is the first of its series
+            values = self.values(part, max(twice - done, 0))
+            if not self.is_warm:  # it may have imported or compiled, for which it is not charged
+                self.effort += self.runner.effort - before
+            self.is_warm = True
+            for sample, value in zip(part, values, strict=False):
+                self.sample, right = sample, self.reference(*sample)
+                found = conform(value, right)
+                self.last = Trial(sample, found, right)
+                if not self.takes_all and (error := self.not_finite(self.last)) is not None:
+                    raise error
+                yield found, right
+            done, ahead = done + len(values), SERIES_GROWTH * ahead
+
+    def check_time(self) -> None:
+        """Raises RunError after more time than a task may take."""
         if self.runner.effort - self.effort > TASK_LIMIT:
             raise RunError("endless", f"{self.task.name} is too slow: {TASK_LIMIT:g} s have passed", self.task.file)
         if time.monotonic() - self.started > MAX_WAIT * TASK_LIMIT:
             raise RunError(BUSY, f"the machine is busy: {MAX_WAIT * TASK_LIMIT:g} s have passed", self.task.file)
-        if self.is_watched:
-            value = self.runner.watch(self.task.file, self.task.name, *arguments, twice=self.twice)
-        else:
-            value = self.runner.call(self.task.file, self.task.name, *arguments)
-        if self.like is None:
-            self.like = self.reference(*arguments)
-        found = conform(value, self.like)
+
+    def not_finite(self, trial: Trial) -> Wrong | None:
+        """A result that is NaN or infinite where the right one is not; None for any other."""
         for is_such, what, name in ((np.isnan, "NaN (not a number)", "NaN"), (np.isinf, "infinity", "infinite")):
-            if has(is_such, found) and not has(is_such, self.reference(*arguments)):
-                why = special_case(self.task.arguments, arguments)
-                raise Wrong(f"it returns {what}{why or NO_SPECIAL_CASE}", name)
-        return found
+            if has(is_such, trial.found) and not has(is_such, trial.right):
+                return Wrong(f"it returns {what}{self.special_case(trial, is_such) or NO_SPECIAL_CASE}", name)
+        return None
+
+    def special_case(self, trial: Trial, is_such: Callable[[np.ndarray], np.ndarray]) -> str:
+        """The special case of a call that makes its result NaN or infinite, in words; "" if none is sure.
+
+        It is one if the result is another after a small change of the argument.
+        """
+        arguments = trial.sample
+        units = units_of(self.task.function.__doc__ or "", self.task.arguments)
+        for i, words in special_cases(self.task.arguments, arguments, units):
+            changed = arguments[i] + 0.1 + 0.01 * np.arange(np.size(arguments[i])).reshape(np.shape(arguments[i]))
+            with contextlib.suppress(RunError, Wrong):
+                value = self.values([(*arguments[:i], changed, *arguments[i + 1 :])])[0]
+                if not has(is_such, conform(value, trial.right)):
+                    return f" where {words} (0/0)"
+        return ""
+
+    def values(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> list[Any]:
+        """The results of the first of some inputs, as the process sends them. Raises RunError.
+
+        At least one; a later call that fails is not among them. twice: as of `results`.
+        """
+        if self.is_watched:
+            return self.series("watch", twice, samples)
+        return [self.runner.call(self.task.file, self.task.name, *samples[0])]
+
+    def series(self, kind: str, which: int, samples: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """The answer to a message of the check with a number and inputs. Raises RunError."""
+        answer = self.ask(kind, which, [list(sample) for sample in samples])
+        if not isinstance(answer, list) or not 1 <= len(answer) <= len(samples):
+            self.runner.close()
+            raise RunError("ended", f"{self.task.name} wrote into the lab's pipe", self.task.file)
+        return answer
+
+    def ask(self, kind: str, *arguments: Any, time_limit: float | None = None) -> Any:
+        """The answer to a message of the check (`worker.py`). time_limit: [s]. Raises RunError."""
+        return self.runner.ask(kind, self.task.file, self.task.name, list(arguments), time_limit)
 
     def reference(self, *arguments: Any) -> Any:
         """The result of the reference solution; it cannot change the arguments."""
         return call(self.task.function, arguments)
 
-    def trial(self, sample: tuple[Any, ...], *, twice: bool = False) -> Trial:
-        """Its result at an input beside the right one. twice: compared with a second call. Raises RunError or Wrong."""
-        self.like, self.twice = self.reference(*sample), twice
-        found = self.normalised(self(*sample))
-        self.twice = False
-        return Trial(sample, found, self.normalised(self.like))
+    def trial(self, sample: tuple[Any, ...]) -> Trial:
+        """Its result at an input beside the right one. Raises RunError or Wrong."""
+        return next(self.trials([sample]))
+
+    def trials(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> Iterator[Trial]:
+        """Its results at several inputs beside the right ones. twice: as of `results`. Raises RunError or Wrong."""
+        for sample, (found, right) in zip(samples, self.results(samples, twice), strict=True):
+            yield Trial(sample, self.normalised(found), self.normalised(right))
 
     def normalised(self, value: Any) -> Any:
         """A result in the form in which results are compared."""
         return getattr(self.task.check, "normalise", lambda value: value)(value)
 
 
-def special_case(names: Sequence[str], arguments: Sequence[Any]) -> str:
-    """The special case of a call, in words: equal arguments, otherwise zeros; "" for any other."""
-    arrays = [(name, a) for name, a in zip(names, arguments, strict=True) if isinstance(a, np.ndarray | float | int)]
-    pairs = itertools.combinations([(name, a) for name, a in arrays if np.ndim(a)], 2)
-    found = [f"{one} = {other}" for (one, a), (other, b) in pairs if np.array_equal(a, b)]
-    found = found or [f"{name} = 0" for name, a in arrays if not np.any(a)]
-    return f" where {' and '.join(found)} (0/0)" if found else ""
+class EditedFunction(StudentFunction):
+    """A student's function with one edit. number: of the last requested edits."""
+
+    def __init__(self, student: StudentFunction, number: int) -> None:
+        super().__init__(student.runner, student.task)
+        self.number = number
+
+    def values(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> list[Any]:
+        """As of `StudentFunction`."""
+        return self.series("edited", self.number, samples)
+
+
+def special_cases(
+    names: Sequence[str], arguments: Sequence[Any], units: Mapping[str, str]
+) -> Iterator[tuple[int, str]]:
+    """The special cases of a call: the number of an argument, and the case in words: equal arguments, zeros.
+
+    units: of arguments; those of different ones are not compared.
+    """
+    arrays = [(i, name, a) for i, (name, a) in enumerate(zip(names, arguments, strict=True))
+              if isinstance(a, np.ndarray | float)]  # fmt: skip
+    for (_, one, a), (i, other, b) in itertools.combinations([entry for entry in arrays if np.ndim(entry[2])], 2):
+        if units.get(one) == units.get(other) and np.array_equal(a, b):
+            yield i, f"{one} = {other}"
+    yield from ((i, f"{name} = 0") for i, name, a in arrays if not np.any(a))

@@ -1,13 +1,13 @@
 """`answers.toml`: the student's name and answers. It is read leniently and written completely or not at all."""
 
-import json
+import difflib
 import math
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from app.lab.course.answers_text import Unread, is_toml, loads, read_entries
 from app.lab.course.task import Question, Task
 from sim.files import replacing
 
@@ -25,22 +25,27 @@ Value = str | float
 
 
 class Answers(NamedTuple):
-    """Contents of answers.toml. error: why it could not be read, or ""."""
+    """Contents of answers.toml. error: its unreadable parts in words, or "".
+
+    unread: the entries that could not be read, by task and question; all others are in `values`.
+    """
 
     name: str
     values: Mapping[tuple[str, str], Value]  # by task and question
     error: str = ""
+    unread: Mapping[tuple[str, str], Unread] = {}
+    is_broken: bool = False  # the file is no TOML, or cannot be opened
 
     def of(self, task: Task, question: Question) -> Value | None:
-        """The answer, or None; a number as a number, even if written as text."""
+        """The answer as it is written, or None."""
         value = self.values.get((task.name, question.key))
         if isinstance(value, str):
             value = value.strip()
-        if question.kind == "number" and isinstance(value, str):
-            value = number_in(value)
-        if value == "" or (isinstance(value, float) and not math.isfinite(value)):
-            return None
-        return value
+        return None if value == "" else value
+
+    def unread_of(self, task: Task, question: Question) -> Unread | None:
+        """The answer if it could not be read, or None."""
+        return self.unread.get((task.name, question.key))
 
     def done(self, task: Task) -> frozenset[int]:
         """Numbers of the completed steps, from 1."""
@@ -52,41 +57,71 @@ class Answers(NamedTuple):
         return self.values.get((task.name, SHOWN)) == "yes"
 
 
-def number_in(text: str) -> Value:
-    """The number in a text, with a point or a comma; the text itself without one."""
-    try:
-        return float(text.replace(",", "."))
-    except ValueError:
-        return text
-
-
 def read_answers(folder: Path) -> Answers:
-    """The answers in a student's folder. Raises nothing: `error` says why a file cannot be read."""
+    """The answers in a student's folder. Raises nothing: `error` names unreadable parts."""
     path = folder / FILE
     try:
         if path.stat().st_size > MAX_SIZE:
-            return Answers("", {}, f"{FILE} is larger than {MAX_SIZE // 2**20} MiB")
-        table = tomllib.loads(path.read_text(ENCODING))
+            return Answers("", {}, f"{FILE} is larger than {MAX_SIZE // 2**20} MiB", is_broken=True)
+        text = decoded(path.read_bytes())
     except OSError as error:
-        return Answers("", {}, f"{FILE}: {error.strerror}")
-    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, or a number of more digits than Python reads
-        return Answers("", {}, f"{FILE}: {error}")
+        return Answers("", {}, f"{FILE}: {error.strerror}", is_broken=True)
+    unread: dict[tuple[str, str], Unread] = {}
+    wrong, is_broken = "", False
+    try:
+        table = loads(text)
+    except (ValueError, RecursionError) as error:  # no TOML, or a number of more digits than Python reads
+        table, unread, wrong = read_entries(text)
+        wrong, is_broken = wrong or ("" if unread else str(error)), True
     values: dict[tuple[str, str], Value] = {}
     for task, entries in table.items():
         for key, value in entries.items() if isinstance(entries, dict) else ():
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                values[task, key] = as_number(value)
-            elif isinstance(value, str):
-                values[task, key] = value
-    return Answers(str(table.get("name", "")).strip(), values)
+            if isinstance(value, str) or (isinstance(value, int | float) and is_finite(value)):
+                values[task, key] = value if isinstance(value, str) else float(value)
+            else:
+                line = next((i for i, line in enumerate(text.split("\n"), 1) if re.match(rf"\s*{key}\s*=", line)), 0)
+                unread[task, key] = Unread(
+                    line, shown(value), "write a number such as 0.5, or a text in quotation marks"
+                )
+    said = [wrong] if wrong else []
+    said += [f"{'.'.join(part for part in key if part)}, {entry.sentence}" for key, entry in unread.items()]
+    rest = f" ({len(said) - 1} more)" if len(said) > 1 else ""
+    error = f"{FILE}: {said[0]}{rest}" if said else ""
+    return Answers(str(table.get("name", "")).strip(), values, error, unread, is_broken)
 
 
-def as_number(value: int | float) -> float:
-    """A number of a TOML file as a float; infinite if it is too large for one."""
+def decoded(data: bytes) -> str:
+    """The text of a file in the encoding that an editor of any country may have used."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
     try:
-        return float(value)
+        return data.decode(ENCODING)
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
+def is_finite(value: int | float | bool) -> bool:
+    """True for a number that a float can have."""
+    try:
+        return not isinstance(value, bool) and math.isfinite(float(value))
     except OverflowError:
-        return math.inf
+        return False
+
+
+def shown(value: Any) -> str:
+    """A value of TOML as it is written, about."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def strangers(answers: Answers, tasks: Sequence[Task]) -> list[str]:
+    """Sentences on entries that belong to no question, such as a misspelt one."""
+    known = {(task.name, question.key) for task in tasks for question in task.questions}
+    found = []
+    for task, key in answers.values:
+        if (task, key) not in known and key not in (DONE, SHOWN) and answers.values[task, key] != "":
+            near = difflib.get_close_matches(key, [other for name, other in known if name == task], 1)
+            found.append(f"{FILE} {task}.{key}: there is no such question{f'; is it {near[0]}?' if near else ''}")
+    return found
 
 
 def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: str, key: str, value: Value) -> None:
@@ -97,7 +132,7 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
     """
     path = folder / FILE
     # As bytes, so that lines end as they did.
-    text = path.read_bytes().decode(ENCODING) if path.exists() else ""
+    text = decoded(path.read_bytes()) if path.exists() else ""
     changed = with_value(text, task, key, value)
     if changed is None:
         changed = answers_text(tasks, Answers(answers.name, {**answers.values, (task, key): value}))
@@ -108,7 +143,7 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
 def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str) -> None:
     """Change the student's name, as `change_answer` does a value. Raises OSError if that cannot be done."""
     path = folder / FILE
-    text = path.read_bytes().decode(ENCODING) if path.exists() else ""
+    text = decoded(path.read_bytes()) if path.exists() else ""
     changed = NAME.sub(lambda _: f"name = {quoted(name)}", text, count=1)
     if not is_toml(changed) or exact(changed) != {**exact(text), "name": name}:
         changed = answers_text(tasks, answers._replace(name=name))
@@ -152,23 +187,14 @@ def with_value(text: str, task: str, key: str, value: Value) -> str | None:
 
 def exact(text: str) -> dict[str, Any]:
     """A TOML file with its floats as they are written, because NaN differs from itself. Raises ValueError."""
-    return tomllib.loads(text, parse_float=lambda digits: ("float", digits))
-
-
-def is_toml(text: str) -> bool:
-    """True if a text is TOML."""
-    try:
-        tomllib.loads(text)
-    except (ValueError, RecursionError):
-        return False
-    return True
+    return loads(text, parse_float=lambda digits: ("float", digits))
 
 
 def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
     """The text of answers.toml, with the questions as comments. Answers of unknown questions are kept."""
     left = dict(answers.values)
     lines = [
-        "# Your answers. Write between the quotation marks; a number needs none.",
+        '# Your answers. Write between the quotation marks. A number may have its unit: "11.25 cm".',
         "# A prediction cannot be changed later: write it down before you try.",
         "",
         f"name = {quoted(answers.name)}",
@@ -193,12 +219,20 @@ def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
 
 
 def quoted(value: Value) -> str:
-    """A value as TOML writes it."""
+    """A value as TOML writes it, without the short escapes, which are read as backslashes."""
     if not isinstance(value, str):
         return repr(value)
     text = value.encode("utf-8", "replace").decode("utf-8")  # no half of a pair of code units
-    lines = [json.dumps(line, ensure_ascii=False)[1:-1].replace("\x7f", "\\u007f") for line in text.split("\n")]
+    lines = ["".join(map(written, line)) for line in text.split("\n")]
     return f'"{lines[0]}"' if len(lines) == 1 else '"""\n' + "\n".join(lines) + '"""'
+
+
+def written(character: str) -> str:
+    """One character of a text of TOML."""
+    if character in '"\\':
+        return f"\\{character}"
+    is_control = (character < " " and character != "\t") or character == "\x7f"
+    return f"\\u{ord(character):04x}" if is_control else character
 
 
 def wrapped(text: str) -> list[str]:

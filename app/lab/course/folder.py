@@ -143,7 +143,8 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
             lines += ["", f"Write `{task.name}` in `{task.file}`."]
         if task.setup is not None:
             preset = f' --preset "{task.setup.preset}"' if task.setup.preset else ""
-            lines += ["", f"See it: `springtide --scene {task.setup.scene}{preset}`. {task.setup.look}"]
+            scene = f"--scene {task.setup.scene}{preset}"
+            lines += ["", f"See it: `springtide lab {quoted} {scene}`. {task.setup.look}"]
         if task.questions:
             lines += ["", "Questions:", *(f"- `{question.key}`: {question.ask}" for question in task.questions)]
     return "\n".join(lines) + "\n"

@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from app.lab.course.answer_check import AnswerVerdict, check_answer
+from app.lab.course.answer_check import AnswerVerdict, check_answer, chosen
 from app.lab.course.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, change_name, read_answers
 from app.lab.course.folder import MAX_PICTURES, PICTURES
 from app.lab.course.live_values import LiveNumber, LiveValues
@@ -110,7 +110,7 @@ class Workbook:
 
     def verdict(self, task: Task, question: Question) -> AnswerVerdict:
         """The answer to a question, and the check's result."""
-        return check_answer(question, self.answers.of(task, question))
+        return check_answer(question, self.answers.of(task, question), self.answers.unread_of(task, question))
 
     def is_complete(self, task: Task) -> bool:
         """True if every question is answered, and none wrongly."""
@@ -153,9 +153,9 @@ class Workbook:
             self.refresh()
 
     def read_whole(self, folder: Path) -> Answers:
-        """The answers in the file. Raises ValueError if it cannot be read."""
+        """The answers in the file. Raises ValueError if it is no TOML, so that a change would lose entries."""
         found = read_answers(folder)
-        if found.error and (folder / FILE).exists():
+        if found.is_broken and (folder / FILE).exists():
             raise ValueError(f"{found.error}. Nothing is saved until you repair this.")
         return found
 
@@ -238,9 +238,9 @@ def answer_of(question: Question, text: str) -> Value:
     if not word or question.kind == "text":
         return word
     if question.kind == "choice":
-        if word not in question.choices:
+        if chosen(question, word) not in question.choices:
             raise ValueError(f"{word!r} is not one of the choices.")
-        return word
+        return chosen(question, word)
     try:
         return read_number(word, question.unit)
     except ValueError as reason:

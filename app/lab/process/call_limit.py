@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 MAX_WAIT = 10.0  # ratio of the longest wait to the limit, on a machine that is busy with other processes
+MAX_LIBRARY_TIME = 30.0  # [s] of processor time of a call that imports or compiles
 LOOKS = 10  # at a process within the limit
 SLEEP_SHARE = 0.1  # of the time between two looks, below which a process that has computed counts as asleep
 COMPUTING, ENDLESS, ASLEEP, BUSY = "computing", "endless", "asleep", "busy"  # states of a call
@@ -19,11 +20,19 @@ class CallLimit:
 
     def __init__(self, pid: int, seconds: float, wall: float | None = None) -> None:
         """seconds: limit of processor time [s]. wall: of time on the clock [s], `MAX_WAIT` times that by default."""
-        self.pid, self.seconds = pid, seconds
+        self.pid, self.seconds, self.step = pid, seconds, seconds
         self.wall = MAX_WAIT * seconds if wall is None else wall
         self.start = self.looked = self.awake = time.monotonic()  # [s] of looks, and when it last computed
         self.before = self.used = processor_time(pid)[1]  # [s]
         self.looks = 0  # in a row that found it asleep
+
+    def extend(self) -> bool:
+        """Allow for work of a library, such as an import; False once that is too long."""
+        if self.seconds >= MAX_LIBRARY_TIME:
+            return False
+        self.seconds = min(self.seconds + self.step, MAX_LIBRARY_TIME)
+        self.wall += MAX_WAIT * self.step
+        return True
 
     @property
     def taken(self) -> float:

@@ -1,9 +1,10 @@
 """Runs a student's functions in a separate process, so that they cannot harm the lab.
 
-A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. A failure
-is a `RunError`, with its reason and place in words for the student. If a process does not get the processor
-(`call_limit.py`), cannot be started, or ends because the one that forked it has ended, the functions are not to blame:
-the error has the kind `BUSY`, for a lost process after some tries.
+A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. Time in
+an import or in numba's compiler does not count, up to 30 s. A failure is a `RunError`, with its reason and place in
+words for the student. If a process does not get the processor (`call_limit.py`), cannot be started, or ends because the
+one that forked it has ended, the functions are not to blame: the error has the kind `BUSY`, for a lost process after
+some tries.
 """
 
 import ast
@@ -18,30 +19,33 @@ import tempfile
 import threading
 import time
 import traceback
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any, TypeAlias
 
 import numpy as np
 
-from app.lab.process.call_limit import ASLEEP, COMPUTING, CallLimit
+from app.lab.process.call_limit import ASLEEP, COMPUTING, ENDLESS, CallLimit
 from app.lab.process.call_limit import BUSY as BUSY_MACHINE
 from app.lab.process.child_processes import end_with_this_program, kill_with_children
 from app.lab.process.cloth_march import FILE as CLOTH_FILE
 from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.process.rope_march import MarchResult, Segment, packed
-from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL
+from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL, CodePlace, place_in
 from app.lab.process.tabulate import Interval
 from app.lab.process.template import Forked, Template, can_fork
-from app.lab.process.wire import pack, receive, send, unpack
+from app.lab.process.wire import Foreign, pack, receive, send, unpack
 from app.lab.student.source import decoded
 
 TIME_LIMIT = 2.0  # [s] of one call
 LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; longer at each further try
 MAX_LOAD_LIMIT = 90.0  # [s]
 MAX_TRIES = 3  # of a call that loses its process
+# Of a file that does not come to its end.
+AT_LOADING = (
+    'What stands outside of functions runs whenever the file is loaded: put it under if __name__ == "__main__":'
+)
 BUSY = "busy"  # kind of an error that the student's functions did not cause
-EDITS_LIMIT = 2.0  # [s] for the edits of a function
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
 TRACE_TIME = 0.2  # [s] for a process without an answer to report its place
@@ -90,6 +94,8 @@ class Runner:
         self.starts = 0  # processes started
         self.effort = 0.0  # [s] of processor time that calls have taken
         self.is_fresh = False  # its process runs without a folder yet, which can still be set
+        self.course: Mapping[str, str] = {}  # texts of the solutions that stand in for what a watched function calls
+        self._told: Mapping[str, str] = {}  # those that the process has
         self._parsed: set[str] = set()  # files without a syntax error
         self._loaded: set[str] = set()  # files that the process has run
         self._broken: dict[str, RunError] = {}  # file -> reason why it does not run: it is not tried for each function
@@ -97,7 +103,7 @@ class Runner:
         self._process: Process | None = None
         self._aborted = False
         self._trace: IO[bytes] | None = None  # file in which the process reports its place on request
-        self._place: tuple[str, int, str] | None = None  # file, line and function, reported unasked
+        self._place: CodePlace | None = None  # reported unasked
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
 
     def __enter__(self) -> "Runner":
@@ -111,26 +117,7 @@ class Runner:
 
         Functions among the arguments run here when the student's function calls them. Raises RunError.
         """
-        return self._ask("call", file, function, list(arguments))
-
-    def watch(self, file: str, function: str, *arguments: Any, twice: bool) -> Any:
-        """As `call`, of a function without side effects. twice: two equal calls are compared.
-
-        Raises RunError with a kind of `effects.EFFECTS` too.
-        """
-        return self._ask("watch", file, function, [twice, list(arguments)])
-
-    def edits(self, file: str, function: str, *arguments: Any, far: bool) -> list[Any]:
-        """Functions that differ from one by one edit: number, before, after, line, condition and result of each.
-
-        far: the less likely edits. Raises RunError.
-        """
-        found = self._ask("edits", file, function, [far, list(arguments)], EDITS_LIMIT)
-        return found if isinstance(found, list) else []
-
-    def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:
-        """As `call`, of one of the last `edits`."""
-        return self._ask("edited", file, function, [number, list(arguments)])
+        return self.ask("call", file, function, list(arguments))
 
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
@@ -143,7 +130,7 @@ class Runner:
         sheet = segments[0].sheet
         arguments = [sorted(own), step, sheet, x, v, [packed(segment) for segment in segments]]
         file = ROPE_FILE if sheet is None else CLOTH_FILE
-        answer = self._ask("march", file, step, arguments)
+        answer = self.ask("march", file, step, arguments)
         if not is_march(answer, x.shape):
             self.close()
             raise RunError("ended", f"{step} wrote into the lab's pipe", file)
@@ -160,7 +147,7 @@ class Runner:
         parts: list[np.ndarray] = []
         for first in range(0, len(columns[0]), TABLE_ROWS):
             rows = [column[first : first + TABLE_ROWS] for column in columns]
-            part = self._ask("table", file, function, [rows, shape, list(allowed)])
+            part = self.ask("table", file, function, [rows, shape, list(allowed)])
             is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
             if not is_table or part.shape != (len(rows[0]), *(shape or ())) or not np.isfinite(part).all():
                 self.close()
@@ -173,7 +160,7 @@ class Runner:
 
         Raises RunError.
         """
-        names, why = self._ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
+        names, why = self.ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
         return names, why
 
     def abort(self) -> None:
@@ -192,12 +179,15 @@ class Runner:
         """Start the process, so that the next call need not wait for it. Raises RunError if it does not start."""
         self._ready()
 
-    def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
-        """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
+    def ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
+        """Answer of the process to a message of a kind of `worker.py`. Raises RunError.
+
+        function: its name for errors. time_limit: [s]; None for that of the runner.
+        """
         if self._aborted:
             raise RunError("ended", "the lab has ended the process", file)
         if not (self.folder / file).is_file():
-            raise RunError("missing", "there is no such file", file)
+            raise RunError("missing", missing_file(self.folder, file), file, loading=True)
         if file in self._broken:
             raise self._broken[file]
         if file not in self._parsed:
@@ -220,7 +210,7 @@ class Runner:
         self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float,
         functions: list[Callable[..., Any]],
     ) -> Any:  # fmt: skip
-        """As `_ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
+        """As `ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
 
         def refer(function: Callable[..., Any]) -> int:
             functions.append(function)
@@ -229,7 +219,10 @@ class Runner:
         process = self._ready()
         if self.is_fresh:
             self._say(process, ["folder", str(self.folder)])
-            self.is_fresh = False
+            self.is_fresh, self._told = False, {}
+        if self._told != self.course:
+            self._say(process, ["course", "", "", dict(self.course)])
+            self._told = self.course
         limit, self._place = CallLimit(process.pid, time_limit), None
         self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
@@ -237,13 +230,13 @@ class Runner:
             try:
                 if answer[0] == "result":
                     self.effort += float(answer[2])
-                    return unpack(answer[1], lambda _: None)
+                    return unpack(answer[1], lambda _: Foreign("function"))
                 if answer[0] == "loaded":
                     self._loaded.add(file)
                     continue
                 if answer[0] == "at":
-                    _, where, line, inner, used = answer
-                    self._place = (str(where), int(line), str(inner)) if line else None
+                    _, where, line, inner, work, used = answer
+                    self._place = CodePlace(str(where), int(line), str(inner), str(work)) if line else None
                     limit.note(float(used))
                     continue
                 if answer[0] == "failed":
@@ -327,8 +320,8 @@ class Runner:
         end_with_this_program(process, background=self.compiles)
         return process
 
-    def _where(self) -> tuple[str, int, str] | None:
-        """File, line and function of the student's code that the process is running; None if unknown."""
+    def _where(self) -> CodePlace | None:
+        """The place in the student's code that the process is running; None if unknown."""
         if self._process is None or self._trace is None or TRACE_SIGNAL is None:
             return self._place
         return traced(self._process, self._trace, self.folder)
@@ -348,19 +341,35 @@ class Runner:
 
         Raises LostError if it has ended with its template.
         """
-        while (state := limit.look()) == COMPUTING:
-            with contextlib.suppress(queue.Empty):
-                answer = self._answers.get(timeout=limit.patience)
-                break
-        else:
+        early: CodePlace | None = None  # half way to the limit
+        while True:
+            state = limit.look()
+            if state == COMPUTING:
+                with contextlib.suppress(queue.Empty):
+                    answer = self._answers.get(timeout=limit.patience)
+                    break
+                if early is None and limit.taken > 0.5 * limit.seconds:
+                    early = self._where()
+                continue
             place, loading = self._where(), self._is_loading(file)
+            if state == ENDLESS and place is not None and place.work and limit.extend():
+                continue
             self.close()
-            where, line, inner = place or (file, None, file if loading else function)
+            where, line, inner, work = place or CodePlace(file, None, file if loading else function)
             inner = where if inner == "<module>" else inner
             if state == BUSY_MACHINE:
                 text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
                 raise RunError(BUSY, f"the machine is busy: {text}", where, line)
-            why = "it is waiting, not computing" if state == ASLEEP else "is there an infinite loop?"
+            if state == ASLEEP:
+                why = "it is waiting, not computing"
+            elif work:
+                why = f"it was still {work}"
+            elif place is None or repeats(self.folder, early, place):
+                why = "is there an infinite loop?"
+            else:
+                why = f"line {line} takes that long"
+            if loading and not work:
+                why += f" {AT_LOADING}"
             text = f"{inner} did not finish within {limit.seconds:g} s: {why}"
             raise RunError("endless", text, where, line, loading=loading)
         if answer is None:
@@ -376,8 +385,8 @@ class Runner:
         return answer
 
 
-def traced(process: Process, trace: IO[bytes], folder: Path) -> tuple[str, int, str] | None:
-    """File, line and function of a folder at which a process is as it writes them when it gets `TRACE_SIGNAL`."""
+def traced(process: Process, trace: IO[bytes], folder: Path) -> CodePlace | None:
+    """The place in a folder at which a process is, as it writes it when it gets `TRACE_SIGNAL`."""
     assert TRACE_SIGNAL is not None
     before = os.fstat(trace.fileno()).st_size
     with contextlib.suppress(OSError):  # it has ended
@@ -386,15 +395,45 @@ def traced(process: Process, trace: IO[bytes], folder: Path) -> tuple[str, int, 
     while time.monotonic() < end:
         time.sleep(0.01)
         text = ESCAPED.sub(unescaped, os.pread(trace.fileno(), MAX_TRACE, before).decode("ascii", "replace"))
-        for file, line, function in FRAME.findall(text):
-            if Path(file).parent == folder:
-                return Path(file).name, int(line), function
+        found = place_in(folder, FRAME.findall(text))
+        if found is not None:
+            return found
     return None
+
+
+def repeats(folder: Path, early: CodePlace | None, late: CodePlace) -> bool:
+    """True if two places of one call lie in the same loop, or in a function that calls itself."""
+    if early is None or early.file != late.file or late.line is None or early.line is None:
+        return False
+    try:
+        tree = ast.parse((folder / late.file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return False
+    for node in ast.walk(tree):
+        is_loop = isinstance(node, ast.For | ast.While | ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp)
+        if isinstance(node, ast.FunctionDef):
+            is_loop = any(isinstance(part, ast.Name) and part.id == node.name for part in ast.walk(node))
+        if is_loop and all(node.lineno <= line <= (node.end_lineno or 0) for line in (early.line, late.line)):  # type: ignore[attr-defined]
+            return True
+    return False
 
 
 def unescaped(escaped: "re.Match[str]") -> str:
     """The character of an escape sequence of `ESCAPED`."""
     return chr(int(escaped[0][2:], 16))
+
+
+def missing_file(folder: Path, file: str) -> str:
+    """Words for a file that is not there, with one that is near."""
+    stem = file.removesuffix(".py")
+    for path in sorted(folder.glob("*")) if folder.is_dir() else ():
+        if path.suffix == ".ipynb" and path.stem.lower().startswith(stem):
+            return f"there is {path.name}, a notebook: save it as Python, as {file}"
+        if path.is_file() and re.match(rf"{stem}\W*(\d*\W*)?(copy)?\W*\.py(\.txt)?$", path.name, re.IGNORECASE):
+            return f"there is {path.name}: rename it to {file}"
+        if path.is_dir() and (path / file).is_file():
+            return f"there is {path.name}/{file}: move it one folder up"
+    return "there is no such file"
 
 
 def check_syntax(path: Path) -> None:
@@ -403,6 +442,8 @@ def check_syntax(path: Path) -> None:
         ast.parse(decoded(path.read_bytes()))
     except SyntaxError as error:
         text = f"{type(error).__name__}: {error.msg}"
+        if (error.text or "").lstrip().startswith(("%", "!")):
+            text += ". This line is for notebooks: remove it"
         raise RunError("syntax", text, path.name, error.lineno, loading=True) from None
     except (OSError, ValueError, RecursionError, MemoryError):  # the process raises these too
         pass

@@ -6,11 +6,17 @@ the other side computes it), or `["failed", kind, text, file, line, loading]` (l
 It sends `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
-at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
-function has a side effect (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
-its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
-it sends `["at", file, line, function, processor time]` repeatedly on systems that do not tell the lab
-(`call_limit.py`). Printed lines are counted and dropped: the pipes belong to the lab.
+at many arguments (`tabulate.py`). Printed lines are counted and dropped: the pipes belong to the lab.
+
+`["watch", file, function, [twice, samples]]` calls a function at several arguments, and fails where it has a side
+effect (`checked_calls.py`, `diagnosis/effects.py`). `["edits", file, function, [kind, names, conditions, arguments]]`
+calls its edits, `["words", file, function, [numbers, units, clashes]]` describes some of them, and
+`["edited", file, function, [number, samples]]` calls one of them (`diagnosis/edits.py`).
+`["course", "", "", {name: text}]` has no answer: while a function is watched, these solutions stand in for the
+functions of the course that it calls, and `["called", file, function, []]` tells which it has called.
+
+During a long call it sends `["at", file, line, function, work, processor time]` repeatedly on systems that do not tell
+the lab (`call_limit.py`).
 """
 
 import contextlib
@@ -29,18 +35,28 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from app.lab.check.diagnosis.edits import Edit, own_edits
-from app.lab.check.diagnosis.effects import Effect, copied, state_of, watched
+from app.lab.check.diagnosis.effects import Effect
+from app.lab.process.checked_calls import CheckedCalls, plain, solutions
 from app.lab.process.cloth_march import ClothFunctions
 from app.lab.process.rope_march import ClothData, Functions, Unfit, march, unpacked
-from app.lab.process.shared import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
+from app.lab.process.shared import (
+    BACKGROUND_NICENESS,
+    COMPILES,
+    FORKS,
+    ROPE_NICENESS,
+    TRACE_SIGNAL,
+    CodePlace,
+    lower_priority,
+    place_in,
+)
+from app.lab.process.student_modules import StudentModules
 from app.lab.process.tabulate import Interval, tabulate
 from app.lab.process.template import fork_on_request
 from app.lab.process.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
-EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
+CHECKS = ("watch", "edits", "words", "edited", "called")  # messages of the check
 LOOK_AT_PARENT = 1.0  # [s] between two checks that the lab still runs
 PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on its place and processor time
 
@@ -68,7 +84,8 @@ class CountedOutput(io.TextIOBase):
 class Worker:
     """Loads a student's files and calls their functions."""
 
-    folder: Path
+    modules: StudentModules
+    checks: CheckedCalls
 
     def __init__(self, *, was_tried: bool) -> None:
         """was_tried: another process has tried the functions, for which the student waits."""
@@ -81,20 +98,11 @@ class Worker:
             os.dup2(nowhere, number)
         sys.stdin = io.StringIO()
         sys.stdout = sys.stderr = self.output
-        self.modules: dict[str, ModuleType] = {}
-        self.states: dict[str, Any] = {}  # of the modules, before any watched call
-        self.edits: list[Edit] = []  # of the last requested function
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()
         self.began = 0.0  # [s] of processor time, at the start of the call
         self.sending = threading.Lock()  # for one message
-
-    def enter(self, folder: Path) -> None:
-        """Work in the student's folder."""
-        self.folder = folder
-        os.chdir(folder)
-        sys.path.insert(0, str(folder))
 
     def serve(self) -> None:
         """Report that the process is ready, then answer until the lab closes the pipe."""
@@ -102,9 +110,13 @@ class Worker:
         told = receive(self.incoming)
         if told is None:
             return
-        self.enter(Path(told[1]))
+        self.modules = StudentModules(Path(told[1]))
+        self.checks = CheckedCalls(self.modules)
         while (message := receive(self.incoming)) is not None:
             kind, file, function, arguments = message
+            if kind == "course":
+                self.checks.course = solutions(arguments)
+                continue
             self.output.lines = 0
             self.began = time.process_time()
             self.in_call.set()
@@ -134,12 +146,11 @@ class Worker:
             self.in_call.wait()
             time.sleep(PLACE_INTERVAL)
             frames = traceback.walk_stack(sys._current_frames()[main or 0])
-            codes = [(frame.f_code, line) for frame, line in frames]
-            own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
+            calls = [(f.f_code.co_filename, line, f.f_code.co_name) for f, line in frames]
+            place = place_in(self.modules.folder, calls)
             with self.sending, contextlib.suppress(OSError):  # the lab has ended
                 if self.in_call.is_set():  # no place is sent after the result
-                    at = [(Path(code.co_filename).name, line, code.co_name) for code, line in own] or [("", 0, "")]
-                    send(self.outgoing, ["at", *at[0], time.process_time() - self.began])
+                    send(self.outgoing, ["at", *(place or CodePlace("", 0, "")), time.process_time() - self.began])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -148,10 +159,10 @@ class Worker:
             if kind == "compile":
                 from app.lab.process.compiled import compile_functions  # numba, which takes a second to import
 
-                self.compiled, why = compile_functions(self.folder / file, *unpack(arguments, self.remote))
+                self.compiled, why = compile_functions(self.modules.folder / file, *unpack(arguments, self.remote))
                 return ["result", pack([sorted(self.compiled), why], lambda _: 0)]
-            loading = file not in self.modules
-            module = self.load(file)
+            loading = file not in self.modules.loaded
+            module = self.modules.load(file)
             if loading:
                 self.say(["loaded", file])
                 loading = False
@@ -163,23 +174,14 @@ class Worker:
                     functions = ClothFunctions(module, own, step, ClothData(*sheet))
                 done = march(functions, x, v, [unpacked(segment) for segment in segments])
                 return ["result", pack(tuple(done), lambda _: 0)]
-            target = getattr(module, function, None)
+            target = plain(getattr(module, function, None))
             if not callable(target):
-                return ["failed", "missing", f"there is no function {function}", file, None, False]
+                return ["failed", "missing", missing(module, function), file, None, False]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
                 return ["result", pack(tabulate(target, function, columns, shape, Interval(*allowed)), lambda _: 0)]
-            if kind == "watch":
-                twice, arguments = arguments
-                value = self.watch(file, function, unpack(arguments, self.remote), twice=twice)
-            elif kind == "edits":
-                far, arguments = arguments
-                value = self.try_edits(file, function, unpack(arguments, self.remote), far=far)
-            elif kind == "edited":
-                number, arguments = arguments
-                module, target = self.modules[file], self.edits[number].function
-                given = unpack(arguments, self.remote)
-                value = watched(target, [module], given, self.folder, lambda: (target, [module]), twice=False)
+            if kind in CHECKS:
+                value = self.checks.answer(kind, file, function, unpack(arguments, self.remote))
             else:
                 value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
@@ -188,77 +190,19 @@ class Worker:
         except Unfit as error:
             return ["failed", error.kind, error.text, file, error.line, False]
         except PrintedTooMuchError:
-            return ["failed", "printed", f"prints more than {MAX_LINES} lines at a time", *self.place(file), loading]
+            text = f"prints more than {MAX_LINES} lines at a time"
+            return ["failed", "printed", text, *self.modules.place(file), loading]
         except MemoryError:
             text = f"asks for more memory than a call may take, {MEMORY // 2**20} MiB"
-            return ["failed", "memory", text, *self.place(file), loading]
+            return ["failed", "memory", text, *self.modules.place(file), loading]
         except SystemExit:
-            return ["failed", "ended", "calls exit(), which ends the program", *self.place(file), loading]
+            return ["failed", "ended", "calls exit(), which ends the program", *self.modules.place(file), loading]
         except SyntaxError as error:
             where = Path(error.filename or file).name
             return ["failed", "syntax", f"{type(error).__name__}: {error.msg}", where, error.lineno, loading]
         except BaseException as error:
             text = "".join(traceback.format_exception_only(error)).strip().splitlines()
-            return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file), loading]
-
-    def watch(self, file: str, function: str, arguments: list[Any], *, twice: bool) -> Any:
-        """The result of a function without side effects. Raises Effect."""
-        module = self.modules[file]
-        if file not in self.states:
-            self.states[file] = state_of([module])
-        others = modules_below(module, self.folder)
-
-        def anew() -> tuple[Callable[..., Any], list[ModuleType]]:
-            module = self.run(file)
-            return getattr(module, function), [module, *others]
-
-        target, modules = getattr(module, function), [module, *others]
-        if state_of([module]) != self.states[file]:  # an earlier call has changed something
-            target, modules = anew()
-        return watched(target, modules, arguments, self.folder, anew, twice=twice)
-
-    def try_edits(self, file: str, function: str, arguments: list[Any], *, far: bool) -> list[Any]:
-        """The results of the edits of a function: number, before, after, line, condition and result of each."""
-        self.edits, found = [], []
-        end = time.process_time() + EDIT_TIME
-        for edit in own_edits((self.folder / file).read_bytes(), function, vars(self.modules[file]), far=far):
-            if time.process_time() > end:
-                break
-            try:
-                value = edit.function(*copied(arguments))
-            except Exception:
-                continue
-            found.append([len(self.edits), edit.before, edit.after, edit.line, edit.condition, value])
-            self.edits.append(edit)
-        return found
-
-    def place(self, file: str) -> tuple[str, int | None]:
-        """File and line of the student's code where the present exception arose."""
-        _, error, _ = sys.exc_info()
-        frames = traceback.extract_tb(error.__traceback__ if error else None)
-        own = [frame for frame in frames if Path(frame.filename).parent == self.folder]
-        return (Path(own[-1].filename).name, own[-1].lineno) if own else (file, None)
-
-    def load(self, file: str) -> ModuleType:
-        """The student's module, run once."""
-        if file not in self.modules:
-            self.modules[file] = self.run(file)
-        return self.modules[file]
-
-    def run(self, file: str) -> ModuleType:
-        """Run a file as a new module."""
-        name = Path(file).stem
-        spec = importlib.util.spec_from_file_location(name, self.folder / file)
-        if spec is None or spec.loader is None:
-            raise ImportError(f"{file} is not Python")
-        module = importlib.util.module_from_spec(spec)
-        known, sys.modules[name] = sys.modules.get(name), module
-        try:
-            spec.loader.exec_module(module)
-        finally:
-            if known is not None:  # other files hold on to the first one
-                sys.modules[name] = known
-        return module
+            return ["failed", "raised", text[-1] if text else type(error).__name__, *self.modules.place(file), loading]
 
     def remote(self, number: int) -> Any:
         """A function of the lab as the student's function calls it."""
@@ -275,18 +219,20 @@ class Worker:
         return function
 
 
-def modules_below(module: ModuleType, folder: Path) -> list[ModuleType]:
-    """The modules of a folder that one of its modules uses, directly or indirectly."""
-    found = [module]
-    for user in found:
-        for value in vars(user).values():
-            name = None if isinstance(value, ModuleType) else getattr(value, "__module__", None)
-            other = value if name is None else sys.modules.get(name)
-            if isinstance(other, ModuleType) and all(other is not known for known in found):
-                file = getattr(other, "__file__", None) or ""
-                if os.path.dirname(file) == str(folder) and file != module.__file__:
-                    found.append(other)
-    return found[1:]
+def missing(module: ModuleType, function: str) -> str:
+    """Words for a function that a module lacks, with a name that is near."""
+    text = f"there is no function {function}"
+    if function in vars(module):
+        return f"{text}: its name stands for a value of type {type(vars(module)[function]).__name__}"
+    for name, value in vars(module).items():
+        if isinstance(value, type) and callable(getattr(value, function, None)):
+            return f"{text} at the left margin: it is a method of the class {name}"
+    import difflib  # for a rare case
+
+    names = [name for name, value in vars(module).items() if callable(value)]
+    plainest = {name.lower().replace("_", ""): name for name in names}
+    near = difflib.get_close_matches(function.replace("_", ""), plainest, 1, 0.8)
+    return f"{text}. Is it {plainest[near[0]]}?" if near else text
 
 
 def limit_memory() -> None:

@@ -15,7 +15,15 @@ from app.lab.report.report import state_class
 from app.lab.report.rope_picture import svg
 from app.render.markup.html import Html, fill, join
 
-SIGNS = {"right": "✓", "wrong": "✗", "failed": "✗", "incomplete": "●", "not begun": "·", "not checked": "…"}
+SIGNS = {
+    "right": "✓",
+    "wrong": "✗",
+    "failed": "✗",
+    "incomplete": "●",
+    "not begun": "·",
+    "not checked": "…",
+    "waits": "○",
+}
 MAX_TEXT = 220  # characters of a mistake
 STYLE = """
 body { font: 15px/1.4 system-ui, sans-serif; color: #1b2a3a; margin: 1em 1.5em 3em; }

@@ -72,7 +72,8 @@ class Desk:
         """The state of the folder, after a check of the functions that have no verdict."""
         versions, before, rope = self.versions, self.student, self.student.rope
         for task, saved in versions.unchecked():
-            verdict = check_program(saved.folder, versions.process(("check", saved.number, False), saved), task)
+            runner = versions.process(("check", saved.number, False), saved)
+            verdict = check_program(saved.folder, runner, task, self.tasks)
             versions.judge(task, saved, verdict, final=verdict.state != "not checked")
         saved = versions.of(ROPE_FILE)
         if saved is not None and (saved is not self.drawn or rope.text == NOT_DRAWN):
@@ -158,7 +159,9 @@ class Classroom:
 
 def result_of(task: Task, program: Verdict | None, answers: Answers) -> TaskResult:
     """The result of one task."""
-    return TaskResult(task, program, tuple(check_answer(q, answers.of(task, q)) for q in task.questions))
+    return TaskResult(
+        task, program, tuple(check_answer(q, answers.of(task, q), answers.unread_of(task, q)) for q in task.questions)
+    )
 
 
 def turned(before: Student, after: Student) -> Student:

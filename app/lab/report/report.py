@@ -10,7 +10,6 @@ from pathlib import Path
 
 from app.lab.check.check import FolderResult, TaskResult
 from app.lab.check.diagnosis.equation_html import equation_lines
-from app.lab.check.program_check import SAMPLES
 from app.lab.course.answer_check import AnswerVerdict
 from app.lab.course.answers import Answers, Value
 from app.lab.course.folder import MAX_PICTURES, PICTURES, folder_names
@@ -132,7 +131,9 @@ def overview(result: FolderResult, number: int) -> Html:
 
 def state_class(state: str) -> str:
     """The class of the style sheet for a state."""
-    return {"not begun": "faint", "given": "faint", "not checked": "incomplete"}.get(state, state)
+    return {"not begun": "faint", "given": "faint", "not checked": "incomplete", "waits": "incomplete"}.get(
+        state, state
+    )
 
 
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
@@ -174,7 +175,7 @@ def program_text(entry: TaskResult) -> Html:
     if program.state == "right":
         behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
         told = behaviour if is_answered(entry) else ""
-        text = f"Matches the reference at {SAMPLES} random inputs. {told and 'Behaviour: '}{told}"
+        text = f"Matches the reference at all inputs of the check. {told and 'Behaviour: '}{told}"
     return fill(
         '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>{}',
         entry.task.name, state_class(program.state), program.state, text,

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
-from app.lab.check.program_check import Verdict
+from app.lab.check.program_check import Verdict, settled
 from app.lab.course.task import Task
 from app.lab.process.runner import BUSY, TIME_LIMIT, RunError, Runner, unexpected
 from app.lab.student.saved import Saved, read_files, store
@@ -125,7 +125,7 @@ class Versions:
         # These four are replaced, never changed.
         self.of_file: Mapping[str, Saved] = {}  # file of tasks -> version in which its functions were saved last
         self.errors: Mapping[Use, RunError] = {}  # of the newest version
-        self.verdicts: Mapping[str, Verdict] = {}  # function -> outcome of its check as it was saved last
+        self.alone: Mapping[str, Verdict] = {}  # function -> outcome of its own check as it was saved last
         self.compiled: Mapping[Use, Compiled] = {}
         self.judged: dict[str, int] = {}  # function -> version of its final verdict
         self.tried: dict[Use, int] = {}  # number of the version that was tried last
@@ -162,7 +162,7 @@ class Versions:
             self.newest, old = saved, self.of_file
             self.of_file = {file: saved if file in affected else old.get(file, saved) for file in files}
             changed = {task.name for task in self.tasks if task.file in affected}
-            self.verdicts = {name: verdict for name, verdict in self.verdicts.items() if name not in changed}
+            self.alone = {name: verdict for name, verdict in self.alone.items() if name not in changed}
             self.errors = {use: error for use, error in self.errors.items() if use.file not in affected}
             if self.compiling is not None and self.compiling[0] not in self.of_file.values():
                 self.compiling[1].abort()
@@ -280,6 +280,12 @@ class Versions:
                 return
         runner.close()
 
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        """The verdict on each function as it was saved last, given those on the functions that it calls."""
+        alone = self.alone
+        return {name: settled(name, alone) for name in alone}
+
     def unchecked(self) -> list[tuple[Task, Saved]]:
         """The functions that have no final verdict as they were saved last, in the order of the lab."""
         found = [(task, self.of_file.get(task.file)) for task in self.tasks if task.check is not None]
@@ -289,7 +295,7 @@ class Versions:
         """Take the verdict on a function, unless it has been saved again. final: it is not to be checked again."""
         with self.lock:
             if self.of_file[task.file] is saved:
-                self.verdicts = {**self.verdicts, task.name: verdict}
+                self.alone = {**self.alone, task.name: verdict}
                 if final:
                     self.judged[task.name] = saved.number
 

@@ -31,14 +31,20 @@ from app.scenes.charts import PALETTE
 
 SAME = 1e-6  # [m] below which two ropes are the same
 ROUNDING = 1e-9  # [m] by which a right solution may differ if nothing else explains a difference
+MAX_EXPLAINED = 0.25  # [m] that the lines of `unlike` explain at most
+BEYOND = (
+    "That is more than these settings explain. A function that is called right below is right at the inputs of the "
+    "check: look for a limit or a special case in it."
+)
 CHART_WIDTH, CHART_HEIGHT = 280, 148  # [pixels] of the chart of the difference
 CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 42, 22  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
-ORDER = ("failed", "wrong", "not checked", "checking", "right")  # of the functions
+ORDER = ("failed", "wrong", "waits", "not checked", "checking", "right")  # of the functions
 COLOURS = {
     "right": GOOD_COLOUR,
     "wrong": ERROR_COLOUR,
     "failed": ERROR_COLOUR,
+    "waits": WARNING_COLOUR,
     "checking": WARNING_COLOUR,
     "not checked": WARNING_COLOUR,
 }
@@ -197,6 +203,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
     said = [fill("Your {} is driven by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
+    if not own:
+        said = [fill("Your {} has not moved yet.", scene)]
     if report.seconds:
         pace = report.step / report.seconds
         speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
@@ -214,6 +222,10 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         apart = "Less than 1 µm" if report.difference < SAME else metres(report.difference)
         said.append(fill("{} from the program's {}.", bold(apart), TRANSLUCENT[scene]))
         said.append(difference_chart(report, scene))
+        if report.difference > (MAX_EXPLAINED if report.unlike else SAME):
+            said.append(coloured(BEYOND, WARNING_COLOUR))
+    elif report.restarts and own:
+        said.append(fill("It has not moved far enough since its restart to be compared."))
     if report.grid != (0, 0):
         rows, cols = report.grid
         what = "Rows and columns: {} × {} points, without pleats, self-collision and mouse, as plain Python is slow."

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import viser
 
+from app.lab.course.answer_check import chosen
 from app.lab.course.live_values import LiveNumber, LiveValue, LiveValues, fill_in
 from app.lab.course.task import PREDICTION, Question, Task, TaskSetup
 from app.lab.course.workbook import Workbook, read_off
@@ -90,6 +91,7 @@ class QuestionWidgets:
         self.guide, self.task, self.question = guide, task, question
         self.workbook = guide.workbook
         self.refusal = ""
+        self.refused: str | None = None  # an answer that was not saved because the file could not be read
         self.typed = self.flushed = "", 0.0  # the text as typed, and when [s] it last changed; the one that was kept
         gui = guide.gui
         self.widgets: list[GuiHandle] = []
@@ -113,8 +115,12 @@ class QuestionWidgets:
     def kept_text(self) -> str:
         """Content of the field for the stored answer."""
         answer = self.workbook.answers.of(self.task, self.question)
+        unread = self.workbook.answers.unread_of(self.task, self.question)
         if self.question.kind == "choice":
-            return answer if isinstance(answer, str) and answer in self.question.choices else UNANSWERED
+            found = chosen(self.question, answer) if isinstance(answer, str) else ""
+            return found if found in self.question.choices else UNANSWERED
+        if unread is not None:
+            return unread.text
         return "" if answer is None else answer if isinstance(answer, str) else f"{answer:.10g}"
 
     async def on_field(self, event: ViserEvent) -> None:
@@ -136,6 +142,7 @@ class QuestionWidgets:
     def store(self, text: str) -> None:
         """Save an answer, or remember why it was refused."""
         self.refusal = self.guide.attempt(lambda: self.workbook.answer(self.task, self.question, text))
+        self.refused = text if self.refusal and self.workbook.answers.error else None
         if not self.refusal:
             self.guide.refusal = ""  # such as that a prediction comes first
         self.guide.stale = True
@@ -149,6 +156,8 @@ class QuestionWidgets:
 
     def show(self) -> None:
         """Show the stored answer and its check, except over a text that is being typed."""
+        if self.refused is not None and not self.workbook.answers.error:  # the student has mended the file
+            self.store(self.refused)
         verdict = self.workbook.verdict(self.task, self.question)
         self.field.disabled = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
         shown = self.kept_text()

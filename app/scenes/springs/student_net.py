@@ -32,12 +32,17 @@ class StudentNet:
     def __init__(self, live: LiveNet) -> None:
         self.live = live
         self.answers: queue.SimpleQueue[Marched] = queue.SimpleQueue()  # of one run: an earlier one had another
-        self.max_speed = 0.0  # [m/s] of the fastest point, along an axis
         self.rows: collections.deque[tuple[float, float]] = collections.deque(maxlen=MAX_ROWS)  # (t, m)
+        self.since = 0.0  # [s] of the last restart from the program's net: what was before it is not compared
         self.waiting: collections.deque[Segment] = collections.deque()
         self.sent: list[Segment] = []  # that are being taken
         self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None without a net of the student's
         self.matched: NDArray[np.float64] | None = None  # (n, 3) [m] the program's at the same moment
+
+    @property
+    def max_speed(self) -> float:
+        """Speed [m/s] of the fastest point, along an axis."""
+        return 0.0 if self.points is None or self.left else float(np.abs(self.v).max())
 
     @property
     def is_comparable(self) -> bool:
@@ -58,6 +63,7 @@ class StudentNet:
     def restart(self, x: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         """A new run."""
         self.rows.clear()
+        self.since = 0.0
         self.begin(x, v, 0.0)
         self.live.report = StudentReport(version=self.live.report.version)
 
@@ -68,7 +74,8 @@ class StudentNet:
         if end - self.time > MAX_BEHIND and not self.left:
             restarts = self.live.report.restarts + 1
             self.begin(x, v, end)
-            self.live.report = self.live.report._replace(restarts=restarts)
+            self.since = end
+            self.live.report = self.live.report._replace(restarts=restarts, difference=math.nan)
         self.send()
 
     def send(self) -> None:
@@ -95,7 +102,6 @@ class StudentNet:
         if done is None:
             self.live.report = self.live.report._replace(version=0)
             self.points = self.matched = None
-            self.max_speed = 0.0
             for segment in (*segments, *self.waiting):
                 if segment.x is not None:
                     self.x, self.v, self.time = segment.x, np.zeros_like(segment.x), segment.end
@@ -112,17 +118,17 @@ class StudentNet:
             if segment.x is None:
                 continue
             self.points, self.matched = x, segment.x
-            if self.is_comparable:
+            if self.is_comparable and segment.end - self.since >= (MAX_BEHIND if self.since else 0.0):
                 self.rows.append((segment.end, float(np.linalg.norm(x - segment.x, axis=1).max())))
         self.v, self.left = march.v, left
-        self.max_speed = 0.0 if left else float(np.abs(march.v).max())
         table = np.array(self.rows).reshape(-1, 2)
         self.live.report = self.live.report._replace(
             version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method, unlike=self.unlike,
             sphere=any(segment.forces.sr > 0.0 for segment in segments),
             seconds=march.step_time, step=segments[-1].h,
             behind=sum(segment.steps * segment.h for segment in self.waiting),
-            left_at=self.time if left else math.nan, difference=self.rows[-1][1] if self.rows else math.nan,
+            left_at=self.time if left else math.nan,
+            difference=self.rows[-1][1] if self.rows and self.rows[-1][0] >= self.since else math.nan,
             times=table[:, 0], differences=table[:, 1],
         )  # fmt: skip
         if left:

@@ -44,10 +44,8 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     spec = read_spec(spec_path)
     for line in spec.notes:
         say(line)
-    if out.suffix != ".nc":
-        raise argument_error("--out", str(out), "a name that ends in .nc")
     figures = [draft_of(out.with_suffix(suffix)).name for suffix in FIGURE_SUFFIXES]
-    check_out_file("--out", out, f"{out.name}.cases-journal", *figures)
+    check_out_file("--out", out, f"{out.name}.cases-journal", *figures, endings=(".nc",))
     for package in (*REQUIRED_PACKAGES, *(("distributed",) if scheduler is not None else ())):
         if importlib.util.find_spec(package) is None:
             raise ValueError(f"sweep: {package} is not installed (pip install '.[sweep]')")

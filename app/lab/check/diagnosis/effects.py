@@ -6,6 +6,7 @@ Only numpy is imported here, so that the process starts fast.
 """
 
 import ast
+import collections
 import contextlib
 import inspect
 import os
@@ -13,6 +14,7 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any, NamedTuple, TypeAlias
@@ -93,7 +95,7 @@ def watched(
         shake()
         return watched(function, modules, arguments, folder, anew, twice=twice)
     kept = [key for key in after if after[key] != state.get(key)]
-    if twice or kept:
+    if (twice or kept) and is_plain(value):
         with restored():
             differs = not alike(value, function(*copied(arguments)))
             alternates = differs and alike(value, function(*copied(arguments)))
@@ -212,27 +214,48 @@ def alike(one: Any, other: Any) -> bool:
     return bool((np.abs(a - b)[finite] <= SAME_RESULT * np.abs(a[finite]).max(initial=0.0)).all())
 
 
-def digest(value: Any, depth: int = MAX_DEPTH) -> Any:
-    """A value that differs after a change of another one."""
+def digest(value: Any, folder: str = "", depth: int = MAX_DEPTH) -> Any:
+    """A value that differs after a change of another one.
+
+    Lists, dicts, sets, arrays and numbers count, and objects of the student's own classes, in files of `folder`. What
+    an object of a library keeps is its own affair, as long as results do not change.
+    """
     if isinstance(value, np.ndarray) and value.dtype.kind != "O":
         return value.dtype.str, value.shape, value.tobytes()
-    if isinstance(value, type | ModuleType | types.BuiltinFunctionType) or depth == 0:
+    if depth == 0:
         return id(value)
-    if isinstance(value, list | tuple | np.ndarray):
-        return type(value), tuple(digest(part, depth - 1) for part in value)
+    if isinstance(value, list | tuple | np.ndarray | collections.deque):
+        return type(value), tuple(digest(part, folder, depth - 1) for part in value)
     if isinstance(value, dict):
-        return tuple((repr(key), digest(part, depth - 1)) for key, part in value.items())
-    if isinstance(value, types.FunctionType):
-        return id(value)
-    if type(value).__module__ == "numpy.random._generator":
-        return digest(value.bit_generator.state)
-    held = getattr(value, "__dict__", None)
-    return (id(value), digest(held, depth - 1)) if held else (type(value), repr(value))
+        return tuple((repr(key), digest(part, folder, depth - 1)) for key, part in value.items())
+    if value is None or isinstance(value, int | float | complex | str | bytes | set | frozenset | np.generic):
+        return type(value), repr(value)
+    if folder and is_own(type(value), folder):
+        cached = {name for name, part in inspect.getmembers_static(type(value)) if isinstance(part, cached_property)}
+        held = (
+            {key: part for key, part in vars(value).items() if key not in cached} if hasattr(value, "__dict__") else {}
+        )
+        return id(value), digest(held, folder, depth - 1)
+    return id(value)
+
+
+def is_own(kind: type, folder: str) -> bool:
+    """True for a class of a file in a folder."""
+    file = getattr(sys.modules.get(kind.__module__), "__file__", None) or ""
+    return os.path.dirname(file) == folder
+
+
+def is_plain(value: Any) -> bool:
+    """True for numbers, texts, arrays, and lists and tuples of them, by which two calls can be compared."""
+    if isinstance(value, list | tuple):
+        return all(map(is_plain, value))
+    return value is None or isinstance(value, int | float | complex | str | np.ndarray | np.generic)
 
 
 def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
     """The state that functions of modules may keep: names in words, with digests. The first module goes unnamed."""
     found: dict[str, Any] = {}
+    folder = os.path.dirname(getattr(modules[0], "__file__", None) or "")
     for module in modules:
         inside = "" if module is modules[0] else f"{module.__name__}."
         for own_name, value in vars(module).items():
@@ -240,26 +263,26 @@ def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
                 continue
             name = f"{inside}{own_name}"
             if isinstance(value, types.FunctionType):
-                found.update(state_of_function(name, value))
+                found.update(state_of_function(name, value, folder))
             elif isinstance(value, type) and value.__module__ == module.__name__:
                 parts = {key: part for key, part in vars(value).items() if not key.startswith("__")}
-                found.update({f"{name}.{key}": digest(part) for key, part in parts.items()})
+                found.update({f"{name}.{key}": digest(part, folder) for key, part in parts.items()})
             else:
-                found[name] = digest(value)
+                found[name] = digest(value, folder)
     return found
 
 
-def state_of_function(name: str, function: types.FunctionType) -> Mapping[str, Any]:
+def state_of_function(name: str, function: types.FunctionType, folder: str) -> Mapping[str, Any]:
     """The state that a function itself holds: attributes, values of defaults, names around it."""
-    found = {f"{name}.{key}": digest(value) for key, value in vars(function).items()}
+    found = {f"{name}.{key}": digest(value, folder) for key, value in vars(function).items()}
     code = function.__code__
     arguments = code.co_varnames[: code.co_argcount]
     defaults = function.__defaults__ or ()
     for argument, value in zip(arguments[len(arguments) - len(defaults) :], defaults, strict=True):
-        found[f"the default of the argument {argument} of {name}"] = digest(value)
+        found[f"the default of the argument {argument} of {name}"] = digest(value, folder)
     for cell_name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
         try:
-            found[f"{cell_name} in {name}"] = digest(cell.cell_contents)
+            found[f"{cell_name} in {name}"] = digest(cell.cell_contents, folder)
         except ValueError:  # nothing in it yet
             continue
     return found
@@ -276,7 +299,7 @@ def settings() -> dict[str, Any]:
         "the module search path": tuple(sys.path),
     }
     if (numpy_random := sys.modules.get("numpy.random")) is not None:
-        found[RANDOM[0]] = digest(numpy_random.get_state(), 3)
+        found[RANDOM[0]] = digest(numpy_random.get_state())
     if (python_random := sys.modules.get("random")) is not None:
         found[RANDOM[1]] = hash(python_random.getstate())
     return found

@@ -42,6 +42,8 @@ SPRING_FORMS: tuple[tuple[str, str, Law], ...] = (
      lambda r, s, dv, k, b, d: k * np.minimum(s - d, 0.0) * r / s),
     ("k (|r| - d)", "It has no direction.", lambda r, s, dv, k, b, d: k * (s - d) * np.ones_like(r)),
     ("k (|r| - d) r/|r|²", "It is divided by the length twice.", lambda r, s, dv, k, b, d: k * (s - d) * r / s**2),
+    ("a spring for each component", "The length |r| is that of the whole vector, not of one component.",
+     lambda r, s, dv, k, b, d: k * (abs(r) - d) * r / abs(r)),
     ("k (|r| + d) r/|r|", "The stretch is |r| - d.", lambda r, s, dv, k, b, d: k * (s + d) * r / s),
 )  # fmt: skip
 DAMPING_FORMS: tuple[tuple[str, str, Law], ...] = (

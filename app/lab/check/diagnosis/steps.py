@@ -78,7 +78,10 @@ def mistake_of(row: ComparedRow) -> tuple[str, str]:
     if is_chained(row):
         return "stages chained", f"{found}; {must} Each stage starts from x and v, not from the stage before it."
     if (weights := weights_of(row)) is not None:
-        return "weights do not add up to one", f"{found}; {must} The weights add up to {weights:.4g} instead of 1."
+        return (
+            "weights do not add up to one",
+            f"{found}; {must} The weights add up to {round(weights, 9) + 0.0:.4g} instead of 1.",
+        )
     if change := step_change(row):
         return f"h {change}", f"{found}; {must}"
     return found[0].lower() + found[1:], must[0].upper() + must[1:]

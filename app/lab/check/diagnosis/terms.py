@@ -178,8 +178,11 @@ def explain_terms(
     mistake, text = mistake_of(findings[0])
     others = [f"{name[0].upper()}{name[1:]}. {why}" for name, why in map(mistake_of, findings[1:])]
     is_plain = findings[0].unit.name == WHOLE and (not findings[0].change.text or text.startswith(IGNORED))
-    is_vague = any(finding.factor == 0.0 for finding in findings) or (
-        findings[0].unit.name == WHOLE and not is_plain and findings[0].cost >= FAR_FETCHED
+    is_odd = is_plain and not is_simple(findings[0].factor) and abs(findings[0].factor - 1.0) > SMALL_CHANGE
+    is_vague = (
+        is_odd
+        or any(finding.factor == 0.0 for finding in findings)
+        or (findings[0].unit.name == WHOLE and not is_plain and findings[0].cost >= FAR_FETCHED)
     )
     return Explanation(mistake, " ".join([text, *others]), tuple(lines), stated(findings, terms), is_vague)
 
@@ -435,7 +438,7 @@ def one_more(
     for unit, forms in zip(units, changes, strict=True):
         for form in forms:
             if (factor := factor_between(left, form)) and is_simple(factor):
-                extra = Unit(f"a further term, as {unit.name},", "", (), (), unit.members)
+                extra = Unit(f"a further term like {unit.name}", "", (), (), unit.members)
                 best = cheaper(
                     best, Finding(extra, form, rounded(factor), form.cost + size_cost(unit) + factor_cost(factor))
                 )
@@ -482,8 +485,8 @@ def factor_between(left: np.ndarray, form: ChangedForm) -> float:
 
 
 def may_be_told(unit: Unit, form: ChangedForm, factor: float) -> bool:
-    """True for a factor that identifies the mistake: a simple one, or a constant that is slightly off."""
-    return is_simple(factor) or (unit.name == WHOLE and not form.text and abs(factor - 1.0) <= SMALL_CHANGE)
+    """True for a factor that identifies the mistake: a simple one, or any one of the whole result."""
+    return is_simple(factor) or (unit.name == WHOLE and not form.text)
 
 
 def is_right(finding: Finding) -> bool:
@@ -529,13 +532,18 @@ def mistake_of(finding: Finding) -> tuple[str, str]:
     if unit.name == WHOLE and not change.text and factor:
         if factor == -1.0:
             return "sign reversed", "Every result has the right size and the wrong sign."
-        if not is_simple(factor):
+        if not is_simple(factor) and abs(factor - 1.0) <= SMALL_CHANGE:
             size = f"{100.0 * abs(factor - 1.0):.2g} % too {'large' if factor > 1.0 else 'small'}"
             return "another constant", f"The law is right. Every result is {size}: a constant in it has another value."
         return "constant factor", f"Every result is {factor_text(factor)} times what it must be."
     if unit.name == WHOLE and change.text.startswith(UNUSED):
         name = change.text.removeprefix(UNUSED)
         return f"{name} not used", f"{IGNORED}{name}."
+    if not unit.members:
+        return (
+            "a term too much",
+            f"Beside the right terms there is {unit.name}{', which ' + words(finding) if change.text else ''}.",
+        )
     why = [change.form.why] if change.form else []
     must = f"It must be {unit.formula}." if unit.formula else "This holds for every input tried."
     return f"{unit.name} {words(finding)}", " ".join([*why, must])

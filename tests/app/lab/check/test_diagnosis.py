@@ -13,7 +13,7 @@ import pytest
 
 from app.lab.check.comparing import reproduces
 from app.lab.check.diagnosis.differences import part_of
-from app.lab.check.diagnosis.edits import edits_of, own_edits
+from app.lab.check.diagnosis.edits import Tree, more_slips, slips
 from app.lab.check.diagnosis.equation_html import notation
 from app.lab.check.diagnosis.equations import equations_of, written
 from app.lab.check.diagnosis.factors import is_simple
@@ -311,13 +311,12 @@ def test_weights_of_two_kicks_add_up_to_one(kicks: tuple[float, float], weights:
 
 
 def test_a_condition_may_hold_always_or_never() -> None:
-    found = {edit.function(3.0) for edit in edits_of(positive) if edit.before == "x > 0.0" and edit.condition}
-    assert found == {3.0, -3.0}
-
-
-def positive(x: float) -> float:
-    """Its size."""
-    return x if x > 0.0 else -x
+    tree = Tree(b"def positive(x):\n    return x if x > 0.0 else -x\n", "positive", {}, ())
+    fixed = [candidate for candidate in slips(tree, ["x"], ()) if candidate.condition]
+    assert {tree.function(candidate)(3.0) for candidate in fixed} == {3.0, -3.0}
+    assert {(tree.words(candidate).shown[0].before, candidate.condition) for candidate in fixed} == {
+        ("x > 0.0", "always"), ("x > 0.0", "never"),
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -403,11 +402,22 @@ def test_a_form_may_differ_by_the_rounding_of_the_right_results() -> None:
     assert not reproduces(form, found, np.array([1.0]))
 
 
+def shown(source: bytes, *kinds: Any) -> list[tuple[str, str]]:
+    """The edits of a function in words."""
+    tree = Tree(source, "one", {}, ())
+    found = (tree.words(candidate) for kind in kinds for candidate in kind(tree) if tree.function(candidate))
+    return [(one.before, one.after) for words in found for one in words.shown]
+
+
+def near(tree: Tree) -> Any:
+    """The likelier edits."""
+    return slips(tree, (), ())
+
+
 def test_the_edits_of_a_number_and_of_the_arguments_of_a_call() -> None:
     source = b"def one(a, b):\n    return f(a, b, 3) + a\n"
-    near = {edit.after for edit in own_edits(source, "one", {}, far=False)}
-    far = {edit.after for edit in own_edits(source, "one", {}, far=True)}
-    assert {after for after in near if re.fullmatch(r"f\(a, b, [^ab]+\)", after)} == {
+    likely, far = ({after for _, after in shown(source, kind)} for kind in (near, more_slips))
+    assert {after for after in likely if re.fullmatch(r"f\(a, b, [^ab]+\)", after)} == {
         "f(a, b, 3)", "f(a, b, 6)", "f(a, b, 1.5)", "f(a, b, 4)", "f(a, b, 2)", "f(a, b, -3)",
     }  # fmt: skip
     assert {after for after in far if re.fullmatch(r"f\([ab3, ]+\)", after)} == {"f(b, a, 3)", "f(a, 3, b)", "f(b, 3)"}
@@ -416,7 +426,7 @@ def test_the_edits_of_a_number_and_of_the_arguments_of_a_call() -> None:
 
 def test_an_edit_of_an_index_is_shown_with_its_array() -> None:
     source = b"def one(numbers, rows):\n    return numbers[:-1, 1:] - numbers[2:rows]\n"
-    found = [(edit.before, edit.after) for far in (False, True) for edit in own_edits(source, "one", {}, far=far)]
+    found = shown(source, near, more_slips)
     assert ("numbers[:-1, 1:]", "numbers[1:, :-1]") in found
     assert len(found) > 100
     for text in (text for edit in found for text in edit if text):

@@ -12,7 +12,7 @@ import socket
 import struct
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -45,6 +45,18 @@ def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
     r = x2 - x1
     length = np.linalg.norm(r)
     return stiffness * (length - rest_length) * r / length {} damping * (v1 - v2)
+"""
+ROPE = next(task for task in TASKS if task.name == "rope_acceleration")
+CALLER = """
+    F = -drag * v
+    for i in range(len(x) - 1):
+        f = spring_force(x[i], x[i + 1], v[i], v[i + 1], stiffness, damping, rest_length)
+        F[i] += f
+        F[i + 1] -= f
+    a = F / mass
+    a[:, 2] -= gravity
+    a[0] = 0
+    return a
 """
 EVIL = "<img src=x onerror=alert(1)>"
 
@@ -142,6 +154,15 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(fold
     assert "stretch of the whole rope" in found[1].text
 
 
+def test_a_right_function_that_calls_a_wrong_one_waits_and_is_no_mistake(folders: list[Path], state_of) -> None:
+    save(folders[0], "+")
+    with (folders[0] / "rope.py").open("a", encoding="utf-8") as file:
+        file.write(f"\n\ndef rope_acceleration({', '.join(ROPE.arguments)}):{CALLER}")
+    results = {result.task.name: result for result in state_of(folders[0]).results}
+    assert (results["spring_force"].state, results["rope_acceleration"].state) == ("wrong", "waits")
+    assert [mistake.place for mistake in mistakes([("ada", tuple(results.values()))])] == ["3.2-1 spring_force"]
+
+
 def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list[Path], state_of) -> None:
     save(folders[2], "+")
     (folders[2] / "answers.toml").write_text(
@@ -191,7 +212,7 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
     busy: dict[Path, int] = {}
     rng, checks, overlaps = np.random.default_rng(7), [], []
 
-    def check(copies: Path, runner: Runner, task: Task) -> Verdict:
+    def check(copies: Path, runner: Runner, task: Task, _: Sequence[Task]) -> Verdict:
         owner = copies.parent
         if busy.setdefault(owner, threading.get_ident()) != threading.get_ident():
             overlaps.append(owner)
@@ -277,7 +298,7 @@ def test_a_function_that_could_not_be_checked_is_checked_again(
     save(folders[0], "-")
     asked: list[str] = []
 
-    def check(copies: Path, runner: Runner, task: Task) -> Verdict:
+    def check(copies: Path, runner: Runner, task: Task, _: Sequence[Task]) -> Verdict:
         asked.append(task.name)
         return Verdict("right") if asked.count(task.name) > 1 else not_checked("the machine is busy")
 

@@ -196,7 +196,7 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
     ("gravity", "mass squared", "return 9.81 * mass_ratio ** 2"),
     ("cloth_forces", "same sign", changed(CLOTH, "F[j] -= pull", "F[j] += pull")),
     ("rope_acceleration", "along y", changed(ROPE, "a[:, 2]", "a[:, 1]")),
-    ("rope_acceleration", "the last", changed(ROPE, "range(len(x) - 1)", "range(len(x) - 2)")),
+    ("rope_acceleration", "the last|too few turns", changed(ROPE, "range(len(x) - 1)", "range(len(x) - 2)")),
     ("spectrum", "k L", changed(PHILLIPS, "np.exp(-1 / (kk * L) ** 2)", "np.exp(-1 / (kk * L))")),
     ("spectrum", "unit length", changed(PHILLIPS, "(k @ wind / kk / U)", "(k @ wind)")),
     ("spectrum", "NaN", changed(PHILLIPS, "            if kk == 0:\n                return 0.0\n", "")),
@@ -228,7 +228,7 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
     ("line_tension", "right angles", "return weight * (hanging ** 2 - height ** 2) / (2 * height) + weight * hanging"),
     (
         "rope_acceleration",
-        "between the first point and the last",
+        "between the first point and the last|too many turns",
         changed(
             ROPE,
             "for i in range(len(x) - 1):",

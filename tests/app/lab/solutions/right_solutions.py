@@ -63,10 +63,8 @@ RIGHT: dict[str, str] = {
         return oil_colour + once * once * (water_colour - oil_colour)""",
     "mixture_viscosity": "return oil_viscosity ** oil_fraction * water_viscosity ** (1 - oil_fraction)",
     "wave_decay": """
-        a = amplitude
-        for _ in range(20000):
-            a = a - a * 2 * viscosity * wavenumber ** 2 * time / 20000
-        return a""",
+        once = np.exp(-viscosity * wavenumber * wavenumber * time)
+        return once * once * amplitude""",
     "reflectance": """
         b = np.arcsin(np.sin(angle) / index)
         s = np.sin(angle - b) / np.sin(angle + b)

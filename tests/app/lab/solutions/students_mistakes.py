@@ -110,7 +110,7 @@ CASES: tuple[tuple[str, str, str], ...] = (
     ("rope_acceleration", "root not held", changed(ROPE, "\n            a[0] = 0", "")),
     ("rope_acceleration", "the result leaves out the last point", changed(ROPE, "a[0] = 0", "a[0] = a[-1] = 0")),
     ("rope_acceleration", "the number of points", changed(ROPE, "F / mass", "F / (mass / len(x))")),
-    ("rope_acceleration", "all links but the last", changed(ROPE, "range(len(x) - 1)", "range(len(x) - 2)")),
+    ("rope_acceleration", "The loop has too few turns", changed(ROPE, "range(len(x) - 1)", "range(len(x) - 2)")),
     (
         "rope_acceleration",
         "the force of the links is 2 times",

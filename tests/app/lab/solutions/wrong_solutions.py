@@ -50,6 +50,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("difference not divided", "return (water_density - oil_density) * oil_thickness"),
     ),
     "draft": (
+        ("mean density", """
+            under = oil_density * oil_thickness + water_density * (height - oil_thickness)
+            return body_density * height / (under / height)"""),
         ("oil forgotten", "return body_density * height / water_density"),
         ("thick oil forgotten", """
             rest = body_density * height - oil_density * oil_thickness
@@ -100,6 +103,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("colour of the oil alone", "return oil_colour"),
     ),
     "mixture_viscosity": (
+        ("products for powers", "return oil_viscosity * oil_fraction * water_viscosity * (1 - oil_fraction)"),
         ("arithmetic mean", "return oil_fraction * oil_viscosity + (1 - oil_fraction) * water_viscosity"),
         ("fractions swapped", "return oil_viscosity ** (1 - oil_fraction) * water_viscosity ** oil_fraction"),
         ("two kinds of logarithm", """
@@ -154,6 +158,16 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             "if index * np.sin(angle) > 1: return 1\n            b = np.arcsin(index * np.sin(angle))")),
     ),
     "mesh_volume": (
+        ("products of coordinates", """
+            V = 0
+            for a, b, c in vertices:
+                V += a * b * c / 6
+            return V"""),
+        ("product by components", """
+            V = 0
+            for f in faces:
+                V += np.sum(vertices[f[0]] * vertices[f[1]] * vertices[f[2]]) / 6
+            return V"""),
         ("corners counted from 1", """
             a, b, c = vertices[faces[:, 0] - 1], vertices[faces[:, 1] - 1], vertices[faces[:, 2] - 1]
             return np.einsum("ij,ij", a, np.cross(b, c)) / 6"""),
@@ -185,6 +199,10 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             return size[0] * size[1] * size[2]"""),
     ),
     "jet_landing": (
+        ("brackets of the divisor", """
+            h = x[2] - level
+            t = (v[2] + np.sqrt(v[2] ** 2 + 2 * gravity * h)) / 2 * gravity
+            return np.array([x[0] + v[0] * t, x[1] + v[1] * t, level])"""),
         ("the earlier time", """
             t = (v[2] - np.sqrt(v[2] ** 2 + 2 * gravity * (x[2] - level))) / gravity
             return np.array([x[0] + v[0] * t, x[1] + v[1] * t, level])"""),

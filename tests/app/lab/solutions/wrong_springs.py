@@ -204,6 +204,13 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("Euler", "return x + h * v, v + h * acceleration(x, v)"),
     ),
     "sphere_force": (
+        ("only above counts as outside", """
+            d = x - centre
+            distance = np.linalg.norm(d)
+            if x[2] > centre[2] + radius:
+                return np.zeros(3)
+            n = d / distance
+            return max(stiffness * (radius - distance) - damping * np.dot(v, n), 0) * n"""),
         ("damping that pulls", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0)",
                                        "(stiffness * (radius - l) - damping * (v @ n))")),
         ("normal not unit length", changed(SPHERE, "n = d / l", "n = d")),
@@ -289,6 +296,14 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("rows and columns swapped", changed(CLOTH_LINKS, ".reshape(rows, cols)", ".reshape(cols, rows).T")),
     ),
     "cloth_forces": (
+        ("air drag for the damping of the links", """
+            F = -damping * v
+            for (i, j), d in zip(links, rest_lengths):
+                r = x[j] - x[i]
+                l = np.linalg.norm(r)
+                F[i] += stiffness * (l - d) * r / l
+                F[j] -= stiffness * (l - d) * r / l
+            return F"""),
         ("force on one end only", """
             F = np.zeros_like(x)
             for (i, j), d in zip(links, rest_lengths):

@@ -397,7 +397,7 @@ def test_a_forged_answer_is_named(right: Session) -> None:
     x, v, segment = bent_rope(False)
     found = Runner(process(right).folder)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
+        patch.setattr(found, "ask", lambda *_: (1, 2, 3))
         with pytest.raises(RunError, match="lab's pipe"):
             found.march({"spring_force"}, "step_rk4", x, v, [segment])
 
@@ -437,6 +437,33 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     process.wait()
     save(right, RIGHT)
     wait_for(lambda: right.versions.verdicts.get("spring_force") == Verdict("right"))
+
+
+CALLER = """
+
+def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    F = -drag * v
+    for i in range(len(x) - 1):
+        f = spring_force(x[i], x[i + 1], v[i], v[i + 1], stiffness, damping, rest_length)
+        F[i] += f
+        F[i + 1] -= f
+    a = F / mass
+    a[:, 2] -= gravity
+    a[0] = 0
+    return a
+"""
+
+
+def test_in_the_panel_a_right_function_waits_for_the_wrong_one_that_it_calls(right: Session) -> None:
+    save(right, RIGHT.replace("return stiffness", "return -stiffness") + CALLER)
+    wait_for(lambda: {"spring_force", "rope_acceleration"} <= set(right.versions.verdicts) and not right.check.waiting)
+    assert right.versions.verdicts["spring_force"].state == "wrong"
+    page = function_lines(right, "rope")
+    assert 'data-function="rope_acceleration" data-state="waits"' in page
+    assert "it calls spring_force, which is wrong: mend that first" in page
+    save(right, RIGHT + CALLER)
+    states = lambda: {name: verdict.state for name, verdict in right.versions.verdicts.items()}  # noqa: E731
+    wait_for(lambda: (states().get("spring_force"), states().get("rope_acceleration")) == ("right", "right"))
 
 
 def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) -> None:

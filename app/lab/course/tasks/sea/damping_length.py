@@ -20,6 +20,9 @@ def inputs(rng):
     return 10.0 ** rng.uniform(-6.0, -2.0), rng.uniform(2.0, 600.0)
 
 
+EXAMPLES = ((1e-3, 600.0), (1e-6, 1.0), (1e-6, 86400.0))
+
+
 MISTAKES = (
     Mistake(
         "amplitude instead of power",

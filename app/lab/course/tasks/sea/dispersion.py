@@ -21,6 +21,14 @@ def inputs(rng):
     return rng.uniform(0.05, 2.0), rng.uniform(0.2, 0.9), rng.uniform(10.0, 40.0), rng.uniform(2.0, 20.0)
 
 
+# Waves of the lab's seas, on the Earth and its two planets, which repeat after 20 and 200 s.
+EXAMPLES = tuple(
+    (k, calm, time, g)
+    for k, calm in ((0.05, 1.0), (0.731, 0.7), (3.0, 1.0), (40.0, 1.0)) for time in (20.0, 200.0)
+    for g in (9.81, 2.1135, 45.53)
+)  # fmt: skip
+
+
 MISTAKES = (
     Mistake(
         "not rounded",

@@ -19,6 +19,10 @@ def inputs(rng):
     return (10.0 ** rng.uniform(-2.0, 2.0),)
 
 
+# The Earth and the lab's two planets.
+EXAMPLES = ((1.0,), (100.0,), (0.01,))
+
+
 MISTAKES = (
     Mistake(
         "radius unchanged",

@@ -21,9 +21,18 @@ def rain_hit(z0, z1, level0, level1):
 
 def inputs(rng):
     """Drops above, through and below a surface that rises or falls."""
-    z0 = rng.uniform(-0.3, 2.0, 12)
-    level0 = rng.uniform(-0.3, 0.3, 12)
-    return z0, z0 - rng.uniform(0.2, 2.0, 12), level0, level0 + rng.uniform(-0.6, 0.6, 12)
+    n = int(rng.integers(5, 16))
+    z0 = rng.uniform(-0.3, 2.0, n)
+    level0 = rng.uniform(-0.3, 0.3, n)
+    return z0, z0 - rng.uniform(0.2, 2.0, n), level0, level0 + rng.uniform(-0.6, 0.6, n)
+
+
+# A drop that starts on the surface has met it before; one that ends on it meets it now.
+EXAMPLES = (
+    (np.array([0.5, 1.0, 2.0]), np.array([-1.0, 0.25, 3.0]), np.array([0.5, 0.0, 0.0]), np.array([0.0, 0.25, 0.5])),
+    (np.array([0.0]), np.array([-1.0]), np.array([0.0]), np.array([0.0])),
+    (np.array([8.0, 1.0]), np.array([0.0, 1.0]), np.array([0.0, 0.0]), np.array([0.0, 1.0])),
+)
 
 
 def share(start, end, hit):

@@ -32,6 +32,14 @@ def inputs(rng):
     return k * (rng.random() > 0.15), wind, rng.uniform(0.5, 2.0), gravity
 
 
+# Wave vectors of a grid: along and across the wind, on both axes, short and long ones; calm and stormy winds.
+EXAMPLES = tuple(
+    (np.array(k), np.array(wind), 0.01, g)
+    for k in ((0.5, 0.0), (0.0, 0.5), (-0.25, 0.0), (0.0, -0.3), (0.3, 0.3), (4.0, 1.0))
+    for wind, g in (((7.0, 0.0), 9.81), ((5.0, 5.0), 9.81), ((0.0, 12.0), 2.1135), ((8.0, -3.0), 45.53))
+)  # fmt: skip
+
+
 def variant(length=lambda U, g: U**2 / g, power=4, sign=-1.0, directed=2, normed=True, cut=True):
     """A function that makes a mistake: another part of the formula."""
 

@@ -27,6 +27,10 @@ def inputs(rng):
     return rng.uniform(300.0, 700.0), rng.uniform(0.5, 1.0), rng.uniform(750.0, 950.0), d, rng.uniform(1000.0, 1100.0)
 
 
+# The lab's box of 1 m and 500 kg/m3, in layers around the one that just carries it.
+EXAMPLES = tuple((500.0, 1.0, 850.0, d, 1025.0) for d in (0.0, 0.2, 0.55, 0.6, 0.7, 0.95, 5.0))
+
+
 MISTAKES = (
     Mistake("oil forgotten", "This is the draft in water alone.", lambda b, H, o, d, w: b * H / w),
     Mistake(
@@ -49,6 +53,11 @@ MISTAKES = (
         "lift of the oil forgotten",
         "The oil carries nothing here: subtract rho_oil d from the load of the water.",
         lambda b, H, o, d, w: b * H / o if b * H <= o * d else d + b * H / w,
+    ),
+    Mistake(
+        "mean density",
+        "This takes the mean density of a box that is wholly under the surface. Count the oil, then the water.",
+        lambda b, H, o, d, w: b * H / ((o * d + w * (H - d)) / H),
     ),
     Mistake(
         "densities swapped", "The densities of oil and water are swapped.", lambda b, H, o, d, w: draft(b, H, w, d, o)

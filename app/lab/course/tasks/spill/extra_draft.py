@@ -20,6 +20,9 @@ def inputs(rng):
     return rng.uniform(0.05, 0.6), rng.uniform(700.0, 990.0), rng.uniform(995.0, 1200.0)
 
 
+EXAMPLES = ((0.2, 850.0, 1025.0), (0.0, 866.0, 1025.0), (3.0, 700.0, 1000.0))
+
+
 MISTAKES = (
     Mistake(
         "the whole thickness",

@@ -27,6 +27,14 @@ def inputs(rng):
     return x, 4.0 * v, level, rng.uniform(2.0, 20.0)
 
 
+# A jet at 45 degrees, one straight down, one from the surface.
+EXAMPLES = (
+    (np.array([0.0, 0.0, 3.0]), np.array([8.0, 0.0, 8.0]), 0.0, 9.81),
+    (np.array([1.0, 2.0, 4.0]), np.array([0.0, 0.0, -2.0]), -1.0, 9.81),
+    (np.array([0.0, 1.0, 0.5]), np.array([3.0, -40.0, 60.0]), 0.5, 2.1135),
+)
+
+
 def at(time, height=None):
     """A function that makes a mistake: the position at another time, or at another height."""
 
@@ -55,6 +63,11 @@ MISTAKES = (
         "half forgotten",
         "The drop falls with g t^2 instead of g t^2/2.",
         at(lambda x, v, level, g: (v[2] + np.sqrt(v[2] ** 2 + 4 * g * (x[2] - level))) / (2 * g)),
+    ),
+    Mistake(
+        "brackets of the divisor",
+        "The divisor is g, as 2 cancels: t = (v_z + sqrt(v_z^2 + 2 g h))/g. This divides by 2 and multiplies by g.",
+        at(lambda x, v, level, g: root()(x, v, level, g) * g * g / 2),
     ),
     Mistake(
         "start velocity forgotten",

@@ -30,6 +30,15 @@ def inputs(rng):
     return corners @ shape.T + rng.uniform(1.0, 3.0, 3), np.array(faces)
 
 
+def tetrahedron(away):
+    """The corner of a cube of 1 m, `away` [m] from the origin."""
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    return corners + np.array([away, 0.0, 0.0]), np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+EXAMPLES = (tetrahedron(0.0), tetrahedron(100.0))
+
+
 def triple(vertices, faces):
     a, b, c = np.moveaxis(vertices[faces], 1, 0)
     return (a * np.cross(b, c)).sum(axis=1)
@@ -41,6 +50,16 @@ def area(vertices, faces):
 
 
 MISTAKES = (
+    Mistake(
+        "products of coordinates",
+        "This adds x y z of each point. Go through the faces, with the corners vertices[face[0]] and so on.",
+        lambda v, f: v.prod(axis=1).sum() / 6,
+    ),
+    Mistake(
+        "product by components",
+        "a * b * c multiplies component by component. a . (b x c) is np.dot(a, np.cross(b, c)).",
+        lambda v, f: v[f].prod(axis=1).sum() / 6,
+    ),
     Mistake("factor 1/6 wrong", "A tetrahedron has a sixth of the box: divide by 6.", lambda v, f: triple(v, f).sum()),
     Mistake(
         "factor 1/6 wrong", "A tetrahedron has a sixth of the box, not a third.", lambda v, f: triple(v, f).sum() / 3

@@ -19,7 +19,15 @@ def inputs(rng):
     return np.exp(rng.uniform(-4.0, 0.0)), np.exp(rng.uniform(-7.0, -5.0)), rng.uniform(0.1, 0.9)
 
 
+EXAMPLES = ((0.1, 0.001, 0.0), (0.1, 0.001, 1.0), (5.0, 0.0018, 0.5), (0.001, 0.001, 0.3))
+
+
 MISTAKES = (
+    Mistake(
+        "products for powers",
+        "The fractions are factors here. They are the exponents: mu = mu_oil^phi mu_water^(1 - phi).",
+        lambda oil, water, phi: phi * oil * (1 - phi) * water,
+    ),
     Mistake(
         "arithmetic mean",
         "This is the mean of the viscosities. Arrhenius takes the mean of their logarithms.",

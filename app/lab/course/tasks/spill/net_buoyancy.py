@@ -17,6 +17,9 @@ def inputs(rng):
     return rng.uniform(0.2, 3.0), rng.uniform(700.0, 1300.0), rng.uniform(800.0, 1100.0), rng.uniform(2.0, 20.0)
 
 
+EXAMPLES = ((1.0, 500.0, 1025.0, 9.81), (1e-3, 7850.0, 1025.0, 9.81), (1000.0, 866.0, 866.0, 45.53))
+
+
 MISTAKES = (
     Mistake(
         "sign reversed",

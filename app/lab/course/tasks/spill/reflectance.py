@@ -22,6 +22,10 @@ def inputs(rng):
     return rng.uniform(0.1, 1.4), rng.uniform(1.3, 1.6)
 
 
+# From straight down to along the surface, for oil and water.
+EXAMPLES = ((0.0, 1.333), (1e-3, 1.47), (1.55, 1.47), (np.pi / 2, 1.333))
+
+
 def polarised(angle, n):
     c, t = np.cos(angle), np.sqrt(1 - (np.sin(angle) / n) ** 2)
     return (c - n * t) / (c + n * t), (n * c - t) / (n * c + t)

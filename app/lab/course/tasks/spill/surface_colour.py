@@ -22,6 +22,10 @@ def inputs(rng):
     return oil, water, rng.uniform(0.01, 0.1), rng.uniform(2.0, 20.0)
 
 
+# The lab's oil, from none to thick.
+EXAMPLES = tuple((np.array([0.1, 0.07, 0.04]), np.array([0.0, 0.3, 0.4]), d, 15.0) for d in (0.0, 1e-3, 0.2, 3.0))
+
+
 MISTAKES = (
     Mistake(
         "light passes once",

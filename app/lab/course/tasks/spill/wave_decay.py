@@ -20,6 +20,9 @@ def inputs(rng):
     return rng.uniform(0.1, 2.0), k, rng.uniform(0.005, 0.02), rng.uniform(0.2, 1.0) / (0.02 * k**2)
 
 
+EXAMPLES = ((1.0, 2.0, 0.005, 60.0), (0.7, 3.0, 0.01, 0.0), (0.01, 60.0, 1e-6, 30.0))
+
+
 MISTAKES = (
     Mistake(
         "rate of the energy",

@@ -27,10 +27,24 @@ def cloth_forces(x, v, links, rest_lengths, stiffness, damping):
 
 
 def inputs(rng):
-    """A square of points in a random shape, with structural and shear links."""
-    links = np.array([(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5), (0, 4), (1, 3), (1, 5), (2, 4)])
-    x, v = rng.normal(size=(2, 6, 3))
+    """A cloth of 2 to 4 rows and columns in a random shape, with some of its links in random order."""
+    rows, cols = (int(number) for number in rng.integers(2, 5, 2))
+    number = np.arange(rows * cols).reshape(rows, cols)
+    steps = ((0, 1), (1, 0), (1, 1), (0, 2), (2, 0))
+    pairs = [(number[: rows - i, : cols - j].ravel(), number[i:, j:].ravel()) for i, j in steps]
+    links = rng.permutation(np.concatenate([np.stack(pair, axis=1) for pair in pairs]))
+    links = links[: rng.integers(max(3, len(links) // 2), len(links) + 1)]
+    x, v = rng.normal(size=(2, rows * cols, 3))
     return x, 2.0 * v, links, rng.uniform(0.3, 1.5, len(links)), rng.uniform(5.0, 20.0), rng.uniform(1.0, 4.0)
+
+
+# Three points of the lab's cloth, one of them far away.
+EXAMPLES = (
+    (
+        np.array([[0.0, 0, 0], [0.3, 0, 0], [0.3, 2.0, 0]]), np.array([[0.0, 0, 0], [1, 0, -5], [0, 3, 0]]),
+        np.array([(0, 1), (2, 1)]), np.array([0.25, 0.25]), 2000.0, 2.0,
+    ),
+)  # fmt: skip
 
 
 def pulls(x, v, links, d, k, b, rest=1.0, other_end=1.0):
@@ -95,6 +109,11 @@ MISTAKES = (
         "damping on absolute velocity",
         "Each end is damped by its own velocity, as by air. A link damps v1 - v2.",
         damped_at_each_end,
+    ),
+    Mistake(
+        "air drag for the damping of the links",
+        "Each point is damped once by its own velocity, as by air. Each link damps v1 - v2.",
+        lambda x, v, links, d, k, b: summed(1.0, -1.0)(x, v, links, d, k, 0.0) - b * v,
     ),
 )
 

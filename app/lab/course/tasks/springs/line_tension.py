@@ -21,6 +21,10 @@ def inputs(rng):
     return rng.uniform(10.0, 2000.0), height * rng.uniform(1.1, 4.0), height
 
 
+# The lab's line: straight down, hanging, and nearly level.
+EXAMPLES = ((750.0, 40.0, 40.0), (750.0, 80.0, 40.0), (0.5, 300.0, 10.0))
+
+
 MISTAKES = (
     Mistake(
         "horizontal part only",

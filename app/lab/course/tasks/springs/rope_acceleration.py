@@ -37,6 +37,17 @@ def inputs(rng):
     return (x, 3.0 * rng.normal(size=(n, 3)), *(float(number) for number in numbers))
 
 
+def lab_rope(n, sag):
+    """The lab's rope of n points, 2 m long, which swings. sag: how far its links are stretched [m]."""
+    i = np.arange(n)[:, None]
+    x = i * (2.0 / (n - 1) + sag) * np.array([0.6, 0.0, -0.8])
+    v = i * np.array([0.5, 0.2, -0.1])
+    return x, v, 1.0, 800.0, 7.0, 1.0, 2.0 / (n - 1), 10.0
+
+
+EXAMPLES = (lab_rope(10, 0.05), lab_rope(2, 0.1), lab_rope(30, -0.01))
+
+
 def variant(first=1.0, second=-1.0, spring_mass=None, weight=1.0, weight_axis=2, held=True, rest=1.0):
     """A function that makes a mistake: a part of the reference with another factor."""
 
@@ -137,6 +148,14 @@ def ring(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     return closed
 
 
+def all_pairs(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    r, dv = x[None] - x[:, None], v[:, None] - v[None]
+    length = links.size(r) + np.eye(len(x))[:, :, None]
+    a = links.both(r, length, dv, stiffness, damping, rest_length).sum(axis=1) / mass
+    a[0] = 0.0
+    return a
+
+
 def air_drag(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     a = -drag * v / mass
     a[0] = 0.0
@@ -155,15 +174,43 @@ def weight(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     return a
 
 
+def weight_on_all_axes(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    a = np.full(x.shape, -gravity)
+    a[0] = 0.0
+    return a
+
+
+def drag_of_next(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    a = np.zeros(x.shape)
+    a[1:-1] = -drag * v[2:] / mass
+    return a
+
+
 TERMS = (
     *links.terms_of_net(of_law, " / m"),
-    Term("the air drag", "-c v / m", air_drag, (Form("-c |v| v / m", "The speed is squared.", squared_drag),)),
-    Term("gravity", "-g in z", weight),
+    Term(
+        "the air drag",
+        "-c v / m",
+        air_drag,
+        (
+            Form("-c |v| v / m", "The speed is squared.", squared_drag),
+            Form("-c v / m with the velocity of the next point", "Each point has its own velocity.", drag_of_next),
+        ),
+    ),
+    Term(
+        "gravity",
+        "-g in z",
+        weight,
+        (Form("-g in x, y and z", "It acts in z only: subtract it from a[:, 2].", weight_on_all_axes),),
+    ),
 )
 GROUPS = links.groups_of_net(
     of_law, " / m",
     (
         Form("that of one link at each point", "Add with +=.", overwritten),
+        Form(
+            "that of all pairs of points", "Only neighbours are joined.", all_pairs,
+        ),
         Form(
             "that of a ring", "A force acts between the first point and the last, which are no neighbours: x[i - 1] is "
             "the last point for i = 0.", ring,

@@ -35,6 +35,19 @@ def inputs(rng):
     return x, 3.0 * v, centre, radius, rng.uniform(10.0, 30.0), rng.uniform(2.0, 6.0)
 
 
+# The sphere of the lab's cloth, and a hard one.
+EXAMPLES = (
+    (np.array([0.1, 0.2, 0.9]), np.array([0.0, 0.5, -2.0]), np.zeros(3), 1.0, 3000.0, 5.0),
+    (np.array([0.0, 0.5, 0.0]), np.array([0.0, -3.0, 0.0]), np.zeros(3), 1.0, 1e5, 10.0),
+)
+
+
+def only_above_counts_as_outside(x, v, centre, radius, stiffness, damping):
+    normal = (x - centre) / np.linalg.norm(x - centre)
+    push = stiffness * (radius - np.linalg.norm(x - centre)) - damping * (v @ normal)
+    return np.zeros(3) if x[2] > centre[2] + radius else max(push, 0.0) * normal
+
+
 def variant(push, everywhere=False):
     """A mistake: another push, a function of n, p, r = x - c, v, k and b; inside the sphere only, or everywhere."""
 
@@ -48,6 +61,11 @@ def variant(push, everywhere=False):
 
 
 MISTAKES = (
+    Mistake(
+        "only above counts as outside",
+        "A point beside the sphere or below it is outside, too: compare the distance from the centre with the radius.",
+        only_above_counts_as_outside,
+    ),
     Mistake(
         "damping that pulls",
         "A point that leaves fast is pulled back. A contact only pushes: take max(..., 0).",

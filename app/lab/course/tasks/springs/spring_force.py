@@ -28,6 +28,14 @@ def inputs(rng):
     return x1, x1 + r, 3.0 * v1, 3.0 * v2, rng.uniform(5.0, 20.0), rng.uniform(1.0, 5.0), rng.uniform(0.5, 1.5)
 
 
+# The lab's rope: one spring under the whole weight, one that snaps back, one along x.
+EXAMPLES = (
+    (np.array([0.0, 0.0, 2.0]), np.array([0.0, 0.0, 1.65]), np.zeros(3), np.array([0.0, 0.0, -3.0]), 800.0, 7.0, 2 / 9),
+    (np.array([1.0, 0.5, 2.0]), np.array([1.1, 0.5, 2.0]), np.zeros(3), np.array([8.0, 2.0, -6.0]), 800.0, 7.0, 2 / 9),
+    (np.array([0.0, 0.0, 0.0]), np.array([3.0, 0.0, 0.0]), np.zeros(3), np.zeros(3), 1e4, 0.0, 0.2),
+)
+
+
 def only_pulls(x1, x2, v1, v2, k, b, d):
     return spring_force(x1, x2, v1, v2, k if np.linalg.norm(x2 - x1) > d else 0.0, b, d)
 

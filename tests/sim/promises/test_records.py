@@ -1,6 +1,7 @@
 """Public records are what their names promise: copies that nobody can change, comparable, hashable and picklable."""
 
 import copy
+import dataclasses
 import pickle
 from collections.abc import Callable
 from typing import Any
@@ -23,7 +24,7 @@ JONSWAP = SPECTRA["jonswap"]
 
 
 def system(**more: Any) -> System:
-    return System((Line(1, CHAIN, 1, 2, 70.0, 5),), POINTS, depth=30.0, **more)
+    return System((Line(1, CHAIN, 1, 2, 70.0, 5),), POINTS, water=Water(30.0), **more)
 
 
 def waves() -> Waves:
@@ -62,6 +63,17 @@ def test_a_record_can_be_compared_hashed_shown_copied_and_saved(name: str) -> No
         assert len(arrays_of(again)) >= 0
         for before, after in zip(arrays_of(one), arrays_of(again), strict=False):
             np.testing.assert_array_equal(before, after)
+
+
+def test_a_water_is_a_value() -> None:
+    fresh = Water(40, 9.81, 1000)
+    assert fresh == Water(np.float64(40.0), density=np.float32(1000.0))  # type: ignore[arg-type]
+    assert {fresh: 1}[Water(40.0, density=1000.0)] == 1
+    assert all(type(value) is float for value in dataclasses.astuple(fresh))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        fresh.depth = 3.0  # type: ignore[misc]
+    for name in ("depth", "gravity", "density"):
+        assert_refused(name, lambda name=name: Water(**{name: -1.0}))  # type: ignore[misc]
 
 
 def test_a_saved_sea_is_the_same_sea() -> None:

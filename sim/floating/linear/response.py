@@ -31,6 +31,7 @@ from sim.floating.statics.equilibrium import Layers, check_layers, density_steps
 from sim.floating.statics.righting import about_rest
 from sim.floating.statics.stability import is_stable
 from sim.numerics.angles import within_half_turn, within_turn
+from sim.records import equal_to_itself
 from sim.validation import argument_error, as_array, check_kind, check_positive
 from sim.water import Water
 
@@ -38,6 +39,7 @@ MAX_TRIM = 1e-3  # [rad] of a body that counts as upright: a hull from a file is
 MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
 
 
+@equal_to_itself
 class LinearForces(NamedTuple):
     """Linear forces of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m.
 

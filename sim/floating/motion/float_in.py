@@ -26,11 +26,13 @@ from sim.floating.statics.stability import Loaded, is_stable, near_upright
 from sim.frames import Progress, equal_steps, frame_times, run_frames
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea, SurfaceAt
+from sim.records import equal_to_itself
 from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
 
 
+@equal_to_itself
 class FloatRun(NamedTuple):
     """n bodies at frames of equal spacing."""
 

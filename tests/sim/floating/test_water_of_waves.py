@@ -48,6 +48,21 @@ def test_a_small_body_surges_and_sways_as_the_water_of_any_depth(depth: float) -
 
 
 @pytest.mark.parametrize("depth", DEPTHS)
+@pytest.mark.parametrize("is_moored", [True, False])
+def test_a_free_body_surges_sways_and_yaws_by_coth_in_waves_of_one_length(depth: float, is_moored: bool) -> None:
+    """Over its motion in deep water, where it yaws as a body of its shape does (Capytaine's in test_long_waves)."""
+    headings = np.array([0.3, 0.9, 2.0, -2.0])
+    k = waves(depth, headings).k[0]
+    deep = response_amplitude(SMALL, math.sqrt(9.81 * k), headings)
+    free = response_amplitude(SMALL, OMEGA, headings, water=Water(depth))
+    found = motion(SMALL, depth, headings) if is_moored else free
+    along = 1.0 / math.tanh(min(k * depth, 300.0))
+    for level in (0, 1, 5):
+        assert np.abs(deep[:, level]).min() > 0.02 * k  # not a ratio of two zeros
+        assert np.abs(found[:, level]) == pytest.approx(along * np.abs(deep[:, level]), rel=5e-3), level
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
 def test_level_motions_are_those_of_deep_water_in_waves_of_the_same_length_times_coth(depth: float) -> None:
     """Surge, sway and yaw of waves of one length: the force is that of the length, the acceleration that of time."""
     headings = np.array([0.3, 0.9, 2.0])

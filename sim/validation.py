@@ -24,7 +24,7 @@ Kind = TypeVar("Kind")
 
 
 class ApproximationWarning(UserWarning):
-    """Warning of an approximation without a bound of its error; the message names it and the right way."""
+    """Warning of a result that is not exactly the one asked for; the message names the approximation."""
 
 
 class ConvergenceError(RuntimeError):

@@ -24,9 +24,9 @@ class Water:
     density: float = SEA_DENSITY  # [kg/m3]; 0: none
 
     def __post_init__(self) -> None:
-        check_positive("depth", self.depth, "m", allow_infinite=True)
-        check_number("gravity", self.gravity, "m/s2", 0.0)
-        check_number("density", self.density, "kg/m3", 0.0)
+        object.__setattr__(self, "depth", check_positive("depth", self.depth, "m", allow_infinite=True))
+        object.__setattr__(self, "gravity", check_number("gravity", self.gravity, "m/s2", 0.0))
+        object.__setattr__(self, "density", check_number("density", self.density, "kg/m3", 0.0))
 
     def __str__(self) -> str:
         return f"water {self.depth:g} m deep of {self.density:g} kg/m3 under a gravity of {self.gravity:g} m/s2"

@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike
 from sim.jit import kernel
 from sim.numerics.root import narrowed
 from sim.numerics.turns import cos_sin_turns
+from sim.records import equal_to_itself
 from sim.validation import (
     argument_error,
     as_array,
@@ -53,6 +54,7 @@ RESPONSES = 6  # of a body to a wave
 DEEP_SEA = Water()
 
 
+@equal_to_itself
 class Kinematics(NamedTuple):
     """The water at n points at one moment."""
 

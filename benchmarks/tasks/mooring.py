@@ -27,6 +27,7 @@ from benchmarks.timing import load
 from sim.mooring import Line, LineType, Point, System, critical_step, simulate, write_moordyn
 from sim.mooring.rest.statics import Rest
 from sim.springs import State
+from sim.water import Water
 
 CHAIN = LineType("chain", 0.09, 80.0, 5e7, -0.8, 1.0, 1.6, 0.0, 0.1)
 END = 20.0  # [s]
@@ -48,7 +49,7 @@ class Measured(NamedTuple):
 def chain(segments: int) -> System:
     """The line of A(segments)."""
     points = Point(1, "fixed", (-140.0, 0.0, -40.0)), Point(2, "coupled", (0.0, 0.0, 0.0))
-    return System((Line(1, CHAIN, 1, 2, 160.0, segments),), points, 40.0)
+    return System((Line(1, CHAIN, 1, 2, 160.0, segments),), points, Water(40.0))
 
 
 def fairlead(t: float) -> tuple[float, float, float]:

@@ -1,6 +1,6 @@
 """Mooring lines: ropes under water, between the bed, points and floating bodies.
 
-system = read_moordyn("line.txt")     # or System(lines, points, depth)
+system = read_moordyn("line.txt")     # or System(lines, points, Water(depth))
 rest = system.at_rest()
 run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, duration=60.0)
 

@@ -1,6 +1,5 @@
 """A hull as a `MooredBody`, by linear theory: added mass and damping of one frequency, waves by the table."""
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,10 +36,7 @@ def moored(
         if water is not None and not waves.water.is_same(water):
             raise argument_error("waves", f"waves on {waves.water}", f"those on the body's {water}")
     given = waves.water if water is None and waves is not None else water
-    depth = None if given is None else given.depth
-    water = given or Water()
-    layers, gravity = ((water.density, math.inf),), water.gravity
-    own = upright_body(body, layers, gravity, depth)
+    own = upright_body(body, None, given)
     C = own.stiffness.copy()
     for e, of in ((0, 2), (1, 2), (5, 3)):
         C[e, e] += HELD * C[of, of]

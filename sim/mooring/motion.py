@@ -83,9 +83,10 @@ def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, A
     `advance` takes the paths as `driven`; without any, coupled points are at their positions in `System.points`.
 
     >>> from sim.mooring import Line, LineType, Point, State, System, advance, paths_to, point_forces
+    >>> from sim.ocean import Water
     >>> chain = LineType("chain", 0.05, 20.0, 1e8)
     >>> points = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, 0.0)))
-    >>> system = System((Line(1, chain, 1, 2, 75.0, 20),), points, depth=30.0)
+    >>> system = System((Line(1, chain, 1, 2, 75.0, 20),), points, Water(depth=30.0))
     >>> state = State.at_rest(system)
     >>> for i in range(10):  # a vessel that moves by 0.1 m/s, in exchanges of 0.1 s
     ...     place = (0.01 * (i + 1), 0.0, 0.0)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sim.mooring.end_forces import LineEnds
 from sim.mooring.run import MooringRun
+from sim.records import equal_to_itself
 from sim.springs.points.point_system import PointSystem
 
 Vector = tuple[float, float, float]
@@ -65,6 +66,7 @@ class Line(NamedTuple):
     clamp_at_end: Vector | None = None
 
 
+@equal_to_itself
 class MooredBody(NamedTuple):
     """A floating body of linear theory about its rest position without lines: M q'' + B q' + C q = forces.
 

@@ -5,12 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.records import equal_to_itself
 from sim.springs.analysis.energy_history import EnergyHistory
 from sim.springs.state import State
 
 Array = NDArray[np.float64]
 
 
+@equal_to_itself
 class MooringRun(NamedTuple):
     """A simulated motion."""
 

@@ -46,7 +46,7 @@ from sim.validation import (
     is_whole_number,
     read_only,
 )
-from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
+from sim.water import Water
 from sim.waves import Waves
 
 KINDS = ("fixed", "coupled", "free", "body")
@@ -64,10 +64,8 @@ class System(MooringParts):
 
     lines: tuple[Line, ...]
     points: tuple[Point, ...]
-    depth: float  # [m]
+    water: Water  # around the lines, above the bed; of density 0: none
     bodies: tuple[MooredBody, ...] = ()
-    gravity: float = EARTH_GRAVITY  # [m/s^2]
-    density: float = SEA_DENSITY  # [kg/m^3]; 0: no water
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
@@ -85,14 +83,10 @@ class System(MooringParts):
         for name in ("lines", "points", "bodies"):
             if len(getattr(self, name)) > MOST_PARTS:
                 raise argument_error(name, len(getattr(self, name)), f"at most {MOST_PARTS}")
-        check_number("depth", self.depth, "m", 0, FARTHEST, above=True)
-        check_number("gravity", self.gravity, "m/s^2", 0, 1e4)
-        for name, unit in (
-            ("density", "kg/m^3"),
-            ("bed_stiffness", "Pa/m"),
-            ("bed_damping", "Pa s/m"),
-            ("friction", ""),
-        ):
+        check_kind("water", self.water, Water, "a Water")
+        check_number("water: depth", self.water.depth, "m", 0, FARTHEST, above=True)
+        check_number("water: gravity", self.water.gravity, "m/s2", 0, 1e4)
+        for name, unit in (("bed_stiffness", "Pa/m"), ("bed_damping", "Pa s/m"), ("friction", "")):
             check_number(name, getattr(self, name), unit, 0)
         check_kind("slack_damping", self.slack_damping, bool, "True or False")
         check_vector("current", self.current, "m/s")
@@ -129,15 +123,9 @@ class System(MooringParts):
         expected = self.water.omega(waves.k)
         wrong = np.abs(waves.omega - expected) > MAX_DISPERSION_ERROR * expected
         if wrong.any():
-            allowed = (
-                f"{float(expected[wrong][0]):g} rad/s, as waves of that length have in gravity {self.gravity:g} m/s^2"
-            )
+            gravity = self.water.gravity
+            allowed = f"{float(expected[wrong][0]):g} rad/s, as waves of that length have in gravity {gravity:g} m/s2"
             raise argument_error("waves: omega", float(waves.omega[wrong][0]), allowed)
-
-    @property
-    def water(self) -> Water:
-        """The water around the lines."""
-        return Water(self.depth, self.gravity, self.density)
 
     def check_point(self, point: Point, bodies: Collection[int]) -> None:
         """Raises ValueError for a point that is not allowed. bodies: their ids."""
@@ -146,8 +134,9 @@ class System(MooringParts):
         x, y, z = check_vector(f"{name}: position", point.position, "m")
         if not max(abs(x), abs(y), abs(z)) < FARTHEST:
             raise argument_error(f"{name}: position", point.position, f"nearer to the origin than {FARTHEST:g} m")
-        if point.kind == "fixed" and self.bed_stiffness > 0.0 and z < -self.depth - 1e-6 * self.depth:
-            raise argument_error(f"{name}: position", point.position, f"on or above the bed at z = {-self.depth:g} m")
+        depth = self.water.depth
+        if point.kind == "fixed" and self.bed_stiffness > 0.0 and z < -depth - 1e-6 * depth:
+            raise argument_error(f"{name}: position", point.position, f"on or above the bed at z = {-depth:g} m")
         for field, unit in (("mass", "kg"), ("volume", "m^3"), ("drag_area", "m^2"), ("added_mass", "")):
             check_number(f"{name}: {field}", getattr(point, field), unit, 0)
         check_vector(f"{name}: force", point.force, "N")
@@ -238,7 +227,7 @@ class System(MooringParts):
             inertia=np.zeros(6 * n),
             gx=0.0,
             gy=0.0,
-            gz=-self.gravity,
+            gz=-self.water.gravity,
             forces=declared(self.forces),
             damped=True,
             axial=True,
@@ -250,7 +239,8 @@ class System(MooringParts):
             **coupling_of(ends, inverse > 0.0, carried)._asdict(),
             places=places,
             parts=parts,
-            bed=-self.depth,
+            bed=-self.water.depth,
+            depth=self.water.depth,
             stop_rate=1.0,
             waves=waves,
             pins=moved,
@@ -342,24 +332,24 @@ def link_tables(system: System, curves: Curves) -> tuple[NDArray[np.int64], NDAr
 
 def part_tables(system: System) -> tuple[NDArray[np.int64], NDArray[np.void]]:
     """`places` and `parts` of the kernels' view: those of the lines, then the masses and floats at points."""
-    places, parts = [], []
+    density, places, parts = system.water.density, [], []
     for line in system.lines:
         kind, at, last = line.type, system.nodes_of[line.id], line.segments
-        drag, height = 0.5 * system.density * kind.diameter, volume_height(kind.volume, kind.diameter)
+        drag, height = 0.5 * density * kind.diameter, volume_height(kind.volume, kind.diameter)
         for i in range(last + 1):
             length = (0.5 if i in (0, last) else 1.0) * line.length / last
             places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, last)]))
             parts.append((
-                length * kind.mass, length * system.density * kind.volume, kind.added_across, kind.added_along,
+                length * kind.mass, length * density * kind.volume, kind.added_across, kind.added_along,
                 length * drag * kind.drag_across, length * drag * math.pi * kind.drag_along, length * kind.diameter,
                 height,
             ))  # fmt: skip
     for i, point in enumerate(system.points):
         if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
             places.append((i, i, i))
-            added, drag = point.added_mass, 0.5 * system.density * point.drag_area
+            added, drag = point.added_mass, 0.5 * density * point.drag_area
             height = volume_height(point.volume, math.pi / 4.0 * (6.0 * point.volume / math.pi) ** (2 / 3))
-            parts.append((point.mass, system.density * point.volume, added, added, drag, 0.0, 0.0, height))
+            parts.append((point.mass, density * point.volume, added, added, drag, 0.0, 0.0, height))
     return np.array(places, dtype=np.int64), np.array(parts, dtype=PART)
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         viscous_two_layer,
         wavenumber,
     )
+    from sim.ocean.fluids.fluid_column import FluidColumn
     from sim.ocean.nonlinear.energy import SeaEnergy
     from sim.ocean.nonlinear.sea import NonlinearSea
     from sim.ocean.nonlinear.starts.packets import breather, modulated_waves
@@ -31,9 +32,9 @@ if TYPE_CHECKING:
     from sim.ocean.records.measured import measured_spectrum
     from sim.ocean.records.recorded import recorded_waves
     from sim.ocean.records.wave_record import zero_crossings
-    from sim.ocean.spectra import SPECTRA
+    from sim.ocean.spectra import SPECTRA, Conditions
     from sim.ocean.spectra.moments import Moments
-    from sim.ocean.spectrum_files import read_spectrum
+    from sim.ocean.spectrum_files import SpectrumSeries, read_spectra, read_spectrum
     from sim.ocean.spectrum_files.records import read_record
     from sim.ocean.statistics.crest_heights import HighCrests, forristall_crest, high_crests, narrow_band_moments
     from sim.ocean.statistics.statistics import beaufort, expected, theory
@@ -44,11 +45,12 @@ if TYPE_CHECKING:
     from sim.waves import Waves
 
 __all__ = [
-    "SPECTRA", "AnySea", "HighCrests", "Moments", "NonlinearSea", "RadialSea", "Ripples", "Sea", "SeaEnergy",
-    "StokesWave", "Surface", "Water", "Waves", "beaufort", "breather", "draw_waves", "expected", "forristall_crest",
-    "gaussian_volume", "group_speed", "high_crests", "measured_spectrum", "mode_ratios", "modulated_waves",
-    "narrow_band_moments", "omega", "phase_speed", "read_record", "read_spectrum", "recorded_waves", "stokes_wave",
-    "theory", "two_layer", "viscous_root", "viscous_two_layer", "wavenumber", "zero_crossings",
+    "SPECTRA", "AnySea", "Conditions", "FluidColumn", "HighCrests", "Moments", "NonlinearSea", "RadialSea", "Ripples",
+    "Sea", "SeaEnergy", "SpectrumSeries", "StokesWave", "Surface", "Water", "Waves", "beaufort", "breather",
+    "draw_waves", "expected", "forristall_crest", "gaussian_volume", "group_speed", "high_crests", "measured_spectrum",
+    "mode_ratios", "modulated_waves", "narrow_band_moments", "omega", "phase_speed", "read_record", "read_spectra",
+    "read_spectrum", "recorded_waves", "stokes_wave", "theory", "two_layer", "viscous_root", "viscous_two_layer",
+    "wavenumber", "zero_crossings",
 ]  # fmt: skip
 
 # Imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor pyfftw.
@@ -65,9 +67,10 @@ HOMES = {
     "sim.ocean.records.measured": "measured_spectrum",
     "sim.ocean.records.recorded": "recorded_waves",
     "sim.ocean.records.wave_record": "zero_crossings",
-    "sim.ocean.spectra": "SPECTRA",
+    "sim.ocean.fluids.fluid_column": "FluidColumn",
+    "sim.ocean.spectra": "SPECTRA Conditions",
     "sim.ocean.spectra.moments": "Moments",
-    "sim.ocean.spectrum_files": "read_spectrum",
+    "sim.ocean.spectrum_files": "SpectrumSeries read_spectra read_spectrum",
     "sim.ocean.spectrum_files.records": "read_record",
     "sim.ocean.statistics.crest_heights": "HighCrests forristall_crest high_crests narrow_band_moments",
     "sim.ocean.statistics.statistics": "beaufort expected theory",

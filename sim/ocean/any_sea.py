@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.ocean.radial.radial_grid import RadialGrid
+from sim.records import equal_to_itself
 from sim.water import Water
 from sim.waves import Kinematics, Waves
 
 
+@equal_to_itself
 class RadialSurface(NamedTuple):
     """The sea on a grid of n points at one moment."""
 
@@ -23,6 +25,7 @@ class RadialSurface(NamedTuple):
     jacobian: np.ndarray  # (n,) float32: below 0 the surface folds
 
 
+@equal_to_itself
 class SurfaceAt(NamedTuple):
     """The sea above n points at one moment, and the interface below it (if there is one, of mean height 0)."""
 

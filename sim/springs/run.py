@@ -5,9 +5,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.records import equal_to_itself
 from sim.springs.analysis.energy_history import EnergyHistory
 
 
+@equal_to_itself
 class Run(NamedTuple):
     """A simulated motion. Ropes have (frames, points, 3), other nets (frames, rows, cols, 3)."""
 

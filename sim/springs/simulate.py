@@ -21,7 +21,7 @@ from sim.springs.points.point_system import PointSystem, RunT, check_system
 from sim.springs.run import Run
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, check_state, energy, set_lag, velocities
-from sim.validation import argument_error, as_array, check_kind, check_number
+from sim.validation import ApproximationWarning, argument_error, as_array, check_kind, check_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
@@ -165,13 +165,19 @@ def run_net(
         h = step or default_step(net, record)
         check_steps(duration, h, MOST_STEPS, step is not None)
         run = stepped(net, state, record, t, h, with_account, progress)
+    approximations = []
     if run.left_out > 0:
-        warnings.warn(
+        approximations.append(
             f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
-            "particle were within reach",
-            RuntimeWarning,
-            stacklevel=3,
+            "particle were within reach"
         )
+    if run.unsettled > 0:
+        approximations.append(
+            f"the solver of {record.name} had not settled in {run.unsettled} steps of {run.step:g} s: their "
+            "error is that of the solver"
+        )
+    for text in approximations:
+        warnings.warn(text, ApproximationWarning, stacklevel=3)
     return run
 
 

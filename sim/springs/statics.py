@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sim.records import equal_to_itself
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Family, Net
 from sim.validation import ConvergenceError, argument_error, as_array, check_kind, check_number, check_positive
@@ -13,6 +14,7 @@ from sim.validation import ConvergenceError, argument_error, as_array, check_kin
 ITERATIONS = 200  # of Newton: a dozen is usual
 
 
+@equal_to_itself
 class Equilibrium(NamedTuple):
     """A rope at rest."""
 

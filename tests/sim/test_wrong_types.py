@@ -87,7 +87,7 @@ CALLS = (
     call(Rain, rate=5.0, length=10.0, ceiling=20.0), call(Fire, position=ORIGIN),
     call(Jet, nozzle=ORIGIN, velocity=(1.0, 0.0, 3.0)),
     call(zero_crossings, t=[0.0, 1.0], height=[0.0, 1.0]),
-    call(draw_waves, spectrum=JONSWAP, conditions=JONSWAP.conditions(), count=4),
+    call(draw_waves, spectrum=JONSWAP, count=4),
     call(WAVES.at, points=[[0.0, 0.0]], t=0.0), call(WAVES.kinematics, points=[[0.0, 0.0, 0.0]], t=0.0),
     call(dispersion.omega, k=1.0), call(dispersion.phase_speed, k=1.0), call(dispersion.group_speed, k=1.0),
     call(dispersion.two_layer, k=1.0, upper_density=850.0, thickness=1.0, lower_density=1025.0),

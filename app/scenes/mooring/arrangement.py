@@ -55,7 +55,7 @@ def at_most(length: float, vector: NDArray[np.float64]) -> NDArray[np.float64]:
 def water_of(params: MooringParams) -> Water:
     """The water of the parameters, or that of their file."""
     if not params.moordyn_file:
-        return Water(params.depth, GRAVITY, DENSITY)
+        return Water(params.depth)
     return opened(params).system.water
 
 
@@ -233,7 +233,7 @@ def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | 
             lines.append(Line(first + j, kind, first + j, first + 9 if last else first + j + 1, length, count))
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     return System(
-        tuple(lines), tuple(points), params.depth, (body,), GRAVITY, DENSITY, friction=params.friction,
+        tuple(lines), tuple(points), water_of(params), (body,), friction=params.friction,
         current=(params.current * c, params.current * s, 0.0), waves=sea,
     )  # fmt: skip
 
@@ -247,7 +247,7 @@ def held(lines: tuple[Line, ...], points: tuple[Point, ...], moved: Vector, dept
         else point._replace(kind="fixed" if point.kind == "coupled" else point.kind)
         for point in points
     ]
-    return System(lines, tuple(placed), depth, (), GRAVITY, DENSITY)
+    return System(lines, tuple(placed), Water(depth))
 
 
 def rows_of(system: System, params: MooringParams) -> LineRows:

@@ -120,7 +120,7 @@ class MooringScene(LineScene):
         mass = float(self.body.mass[0, 0])
         v = self.state.v[:, self.system.node_count]
         force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
-        limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
+        limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.water.gravity
         return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:

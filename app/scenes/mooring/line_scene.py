@@ -162,7 +162,7 @@ class LineScene(abc.ABC):
 
     def lying(self) -> NDArray[np.float64]:
         """(lines,) [m] of unstretched length on the bed."""
-        return self.rows.lying(self.points, -self.system.depth)
+        return self.rows.lying(self.points, -self.system.water.depth)
 
     def force_of_lines(self) -> NDArray[np.float64]:
         """Level force (2,) [N] of the lines on the body or vessel now."""

@@ -1,5 +1,6 @@
 """The scene of moorings: a body on lines that the parameters describe, or the mooring of a MoorDyn file."""
 
+import dataclasses
 from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
@@ -89,7 +90,7 @@ def file_facts(params: MooringParams) -> FileFacts | None:
         return None
     system = opened(params).system
     facts = {
-        "depth": system.depth, "density": system.density, "gravity": system.gravity,
+        **dataclasses.asdict(system.water),
         "bed_stiffness": system.bed_stiffness, "bed_damping": system.bed_damping, "friction": system.friction,
         "types": [kind._asdict() for kind in {line.type.name: line.type for line in system.lines}.values()],
         "points": [point._asdict() for point in system.points],

@@ -121,7 +121,7 @@ def fault_of_file(file: FileMooring, stretch: NDArray[np.float64]) -> Fault | No
 
 def raised_points(file: FileMooring) -> Sequence[str]:
     """Sentences on the fixed points of a file that are not on the bed: an anchor may be meant."""
-    depth = file.system.depth
+    depth = file.system.water.depth
     if file.system.bed_stiffness == 0.0:
         return []
     heights = [(point.id, point.position[2] + depth) for point in file.system.points if point.kind == "fixed"]

@@ -17,13 +17,11 @@ from sim.floating import (
     MotionCoefficients,
     Shape,
     make_fleet,
-    make_water,
     predict,
     pull,
-    step,
 )
-from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.motion.body import pack_linear
+from sim.floating.motion.sea_steps import SeaSteps
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea, SurfaceAt
@@ -35,7 +33,6 @@ FILE_PLACE = (-0.2, 2.4)  # [m] at size 1 of a hull from a file that is 2 m wide
 FILE_DIRECTION = (0.35, 0.94)  # in which a wider one is moved
 SPIRAL_SPACING = 4.2  # [m] at size 1 between the turns of the spiral of the other bodies
 MAX_READINGS = 6  # bodies of the scene's own in the table
-MAX_ACCELERATION = 2.0  # of gravity, of the water; where the sea is exchanged it jumps
 SLICK_RESOLUTION = 1e-4  # [m] of a slick's thickness in predictions
 
 
@@ -163,8 +160,7 @@ class FloatingBodies:
         self.meters = BodyMeters(keel, np.array([kind.shape.is_round for kind in body_kinds], bool))
         self.moorings = BodyMoorings(self.fleet.position[:, :2], self.drafts_at_rest(), hulls)
         self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
-        self.excitation = self.make_excitation()
-        self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water at the bodies, the newest first
+        self.steps = self.make_steps()
         self.pulls: dict[int, BodyPull] = {}  # of the bodies that are grabbed
         self.impulse = np.zeros(self.count)  # [N s] on the water since the scene last took it
 
@@ -211,7 +207,7 @@ class FloatingBodies:
         linear_hull, linear = pack_linear(hulls, self.densities, column.layers)
         self.fleet = self.fleet._replace(linear_hull=linear_hull, linear=linear)
         self.moorings.tie(self.moorings.places, self.drafts_at_rest(), hulls)
-        self.excitation = self.make_excitation()
+        self.steps = self.make_steps()
         self.meters.restart()
 
     def set_down(self, i: int, draft: float) -> None:
@@ -220,10 +216,10 @@ class FloatingBodies:
         self.fleet.velocity[i] = 0.0
         self.meters.restart()
 
-    def make_excitation(self) -> WaveExcitation:
-        """Wave forces on these bodies in these fluids."""
+    def make_steps(self) -> SeaSteps:
+        """Steps of these bodies in these fluids."""
         bodies = [Body(hull, density) for hull, density in zip(self.hull_of_each(), self.densities, strict=True)]
-        return WaveExcitation(bodies, self.widths, self.column.layers)
+        return SeaSteps(bodies, self.widths, self.column.layers)
 
     def grab(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
         """Pull body `index` towards a target [m] for a browser, with at most `limit` weights of the body.
@@ -255,44 +251,20 @@ class FloatingBodies:
         self.moorings.pull(self.fleet, h, moored=moored)
 
     def step(
-        self,
-        at: SurfaceAt,
-        h: float,
-        slick: np.ndarray,
-        coefficients: MotionCoefficients,
-        forces: np.ndarray | None = None,
+        self, sea: AnySea, at: SurfaceAt, middle: float, h: float, slick: np.ndarray, coefficients: MotionCoefficients
     ) -> None:
-        """One step of h [s] on the sea `at` the bodies in the middle of the step.
+        """One step of h [s] on the sea `at` the bodies in the middle [s] of the step.
 
-        slick (n,) [m]: thickness of oil at each that is no layer. forces: those of `forces_of`; None for a sea that is
-        no sum of waves. Raises FloatingPointError if a body's state is no longer finite.
+        slick (n,) [m]: thickness of oil at each that is no layer. Raises FloatingPointError if a body's state is no
+        longer finite.
         """
         if self.count == 0:
             return
         column, self.slick = self.column, slick
-        layer = column.thickness + slick
+        layer = column.thickness + slick  # a slick on top of a layer makes its interface deeper
         oil = column.kind != "mixed" and bool((layer > 0.0).any())
         layers = ((column.oil.density, 1.0), (column.water.density, math.inf)) if oil else column.layers
-        interface = {}
-        if oil:
-            # The interface of the fluid column; where a slick is on top of it, it is deeper by the slick.
-            interface = {
-                "interface": at.interface - layer,
-                "interface_slope": at.interface_slope,
-                "interface_rise": at.interface_rise,
-            }
-        water = make_water(
-            self.fleet,
-            layers,
-            at.height,
-            slope=at.slope,
-            velocity=at.velocity,
-            acceleration=at.acceleration if forces is not None else self.acceleration_of(at, h, coefficients.gravity),
-            excitation=forces,
-            lead=h / 2,
-            **interface,
-        )
-        step(self.fleet, water, h, coefficients)
+        self.steps.step(sea, self.fleet, at, middle, h, coefficients, layers, layer if oil else None)
         self.meters.lift.update(self.fleet.lift, h)
         # A body that presses on the water with more or less than the weight it carries makes waves.
         carried = self.fleet.mass * coefficients.gravity
@@ -300,20 +272,6 @@ class FloatingBodies:
         at_rest = self.fleet.position[:, 2] < -BED_DEPTH
         self.fleet.position[at_rest, 2] = -BED_DEPTH
         self.fleet.velocity[at_rest] = 0.0
-
-    def acceleration_of(self, at: SurfaceAt, h: float, gravity: float) -> np.ndarray:
-        """Upward acceleration (n,) [m/s2] of the water that the bodies meet along their way.
-
-        So it has no mean, as that at places that move with the waves would have (sim/floating/linear/excitation.py).
-        """
-        self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
-        if len(self.rises) <= len(LAST_RATES):
-            return at.acceleration
-        return np.clip(rate_of_change(self.rises, h), -MAX_ACCELERATION * gravity, MAX_ACCELERATION * gravity)
-
-    def forces_of(self, sea: AnySea, at: SurfaceAt, t: float, h: float) -> np.ndarray:
-        """Force and moment (n, 6) of waves on the bodies for the next h [s], from the sea in the middle of it."""
-        return self.excitation.forces(self.fleet, at.label, sea.waves_at(t), t, h)
 
     def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
         """Measure drafts and stains at time t [s], `lead` [s] before the time of the surface `at` the bodies."""

@@ -290,9 +290,8 @@ class RadialSeaScene:
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
                 bodies.moor(h, moored=self.params.mooring)
-                forces = bodies.forces_of(sea, at, middle, h) if sea.is_sum_of_waves else None
                 try:
-                    bodies.step(at, h, slick, coefficients, forces)
+                    bodies.step(sea, at, middle, h, slick, coefficients)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 if self.plot_rows.is_due(self.time):

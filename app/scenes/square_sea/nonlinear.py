@@ -47,13 +47,13 @@ def nonlinear_sea(p: SquareSeaParams, linear: Sea, t: float, place: tuple[float,
     elif p.start in LONG_CRESTED_STARTS:
         carrier = waves.largest(1)
         count = max(round(float(carrier.k.sum()) * p.length / (2.0 * math.pi)), 1)
-        amplitude = hs / (2.0 * math.sqrt(2.0))
+        amplitude, deep = hs / (2.0 * math.sqrt(2.0)), dataclasses.replace(c.water, depth=math.inf)
         if p.start == "breather":
             k = 2.0 * math.pi * count / p.length
             late = BREATHER_DELAY * fade * 0.5 * math.sqrt(c.gravity / k)  # [m], at the group speed
-            waves, _ = breather(amplitude, count, p.length, place[0] - late, c.gravity, c.density)
+            waves, _ = breather(amplitude, count, p.length, place[0] - late, deep)
         else:
-            waves = modulated_waves(amplitude, count, p.length, c.gravity, c.density)
+            waves = modulated_waves(amplitude, count, p.length, deep)
         # Its phases are those of its start; water that is not deep has a dispersion of its own.
         omega = c.omega(waves.kx)
         waves = dataclasses.replace(waves, water=c.water, omega=omega, phase=waves.phase + omega * t)

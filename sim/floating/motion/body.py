@@ -23,6 +23,7 @@ from sim.floating.motion.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, equilibrium_draft
 from sim.floating.statics.stability import UPRIGHT, Loaded, rest_of, with_heading
+from sim.records import equal_to_itself
 from sim.validation import (
     argument_error,
     as_array,
@@ -36,6 +37,7 @@ from sim.validation import (
 UNIFORM_DENSITY = 500.0  # [kg/m3] of a body that is given neither density nor mass
 
 
+@equal_to_itself
 class Body(NamedTuple):
     """A body and how it starts, of uniform density, 500 kg/m3 where neither it nor a mass is given.
 
@@ -186,6 +188,7 @@ class PackedLinear(NamedTuple):
     decay_length: np.ndarray  # (s,) [m] of depth over which a body under water ceases to make waves
 
 
+@equal_to_itself
 class Fleet(NamedTuple):
     """n bodies. `step` changes the first nine arrays, `pull` the next three; the rest is fixed."""
 

@@ -16,21 +16,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.linear.hydrodynamics import check_bed, check_box, check_water_depth
 from sim.floating.motion.body import Body, make_fleet
-from sim.floating.motion.fluid_state import make_water
-from sim.floating.motion.motion import STANDARD, MotionCoefficients, step
+from sim.floating.motion.motion import STANDARD, MotionCoefficients
+from sim.floating.motion.sea_steps import SeaSteps
 from sim.floating.statics.equilibrium import Layers, check_layers, equilibrium_draft
 from sim.floating.statics.stability import Loaded, is_stable, near_upright
 from sim.frames import Progress, equal_steps, frame_times, run_frames
 from sim.interruption import raise_if_stopped
-from sim.ocean.any_sea import AnySea, SurfaceAt
+from sim.ocean.any_sea import AnySea
+from sim.records import equal_to_itself
 from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
 
 
+@equal_to_itself
 class FloatRun(NamedTuple):
     """n bodies at frames of equal spacing."""
 
@@ -79,23 +80,17 @@ class FloatState:
             draft = min(equilibrium_draft(hull, density, self.layers), float(hull.size[2]))
             check_bed(f"bodies[{i}]", hull, draft, sea.water.depth)
             check_box(f"bodies[{i}]", hull, draft)
-        self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
-        self.excitation = WaveExcitation(bodies, self.widths, self.layers) if sea.is_sum_of_waves else None
+        widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
+        self.steps = SeaSteps(bodies, widths, self.layers)
         self.t = sea.time if begin is None else check_number("begin", begin, "s")
-        self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water in the last steps, of h [s]
-        self.h = 0.0
         # (n,) [m] height of the water at the bodies, in the middle of the last step
-        self.surface = sea.at(self.fleet.position[:, :2], self.t, self.widths).height if len(bodies) else np.zeros(0)
+        self.surface = sea.at(self.fleet.position[:, :2], self.t, widths).height if len(bodies) else np.zeros(0)
 
     def advance(self, h: float, steps: int) -> None:
         """Continue by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
         check_number("h", h, "s", 0, LONGEST_STEP * (1.0 + 1e-9), above=True)
         if not is_whole_number(steps) or steps < 0:
             raise argument_error("steps", steps, "a whole number of at least 0")
-        if h != self.h:  # rates of change are those over equal steps
-            self.h, self.rises = h, ()
-            if self.excitation is not None:
-                self.excitation.impulses = ()
         for _ in range(steps):
             raise_if_stopped()
             if len(self.fleet.mass):
@@ -109,21 +104,10 @@ class FloatState:
 
     def take_step(self, middle: float, h: float) -> None:
         """A step of h [s] with the water of its middle [s]."""
-        sea, fleet, gravity = self.sea, self.fleet, self.gravity
-        at = sea.at(fleet.position[:, :2], middle, self.widths)
-        forces, acceleration = None, at.acceleration
-        if self.excitation is not None:
-            forces = self.excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
-        else:  # along the way of the bodies, so that it has no mean (excitation.py)
-            self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
-            if len(self.rises) > len(LAST_RATES):
-                acceleration = np.clip(rate_of_change(self.rises, h), -gravity, gravity)
-        interface = {} if len(self.layers) == 1 else interface_of(at, self.layers[0][1])
-        water = make_water(
-            fleet, self.layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=acceleration,
-            excitation=forces, lead=h / 2, **interface,
-        )  # fmt: skip
-        step(fleet, water, h, self.coefficients._replace(gravity=gravity))
+        at = self.sea.at(self.fleet.position[:, :2], middle, self.steps.widths)
+        thickness = None if len(self.layers) == 1 else self.layers[0][1]
+        coefficients = self.coefficients._replace(gravity=self.gravity)
+        self.steps.step(self.sea, self.fleet, at, middle, h, coefficients, self.layers, thickness)
         self.surface = at.height
 
 
@@ -201,12 +185,3 @@ def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
         if rest is not None and not is_stable(load[0], rest):
             found[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
     return [words for words in found.values() if words]
-
-
-def interface_of(at: SurfaceAt, thickness: float) -> dict[str, np.ndarray]:
-    """The interface under a layer [m], as `make_water` takes it, of a `SurfaceAt`."""
-    return {
-        "interface": at.interface - thickness,
-        "interface_slope": at.interface_slope,
-        "interface_rise": at.interface_rise,
-    }

@@ -11,9 +11,11 @@ import numpy as np
 
 from sim.floating.motion.body import Fleet, check_fleet
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
+from sim.records import equal_to_itself
 from sim.validation import argument_error, as_array, check_number
 
 
+@equal_to_itself
 class FluidState(NamedTuple):
     """Surface and interface for n bodies. Made by `make_water` or `still_water`."""
 

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from sim.floating.hulls.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.motion.rotation import rotation_matrix
 from sim.jit import kernel
+from sim.records import equal_to_itself
 from sim.validation import argument_error, as_array, check_number
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
@@ -157,6 +158,7 @@ def displaced(x: np.ndarray, faces: np.ndarray, nz: np.ndarray, depth: np.ndarra
     return out
 
 
+@equal_to_itself
 class Submerged(NamedTuple):
     """The part of a hull below a surface. The waterplane is the surface inside the hull, seen from above."""
 

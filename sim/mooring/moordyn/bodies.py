@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sim.mooring.moordyn.rows import FileBody
 from sim.mooring.parts import Line, MooredBody, Point
+from sim.water import Water
 
 # Of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it.
 HELD = 1e-6
@@ -70,20 +71,20 @@ def drag_of(body: FileBody) -> Point:
     return Point(-body.id, "body", (x, y, z), drag_area=body.drag_area, body=body.id)
 
 
-def free_body(body: FileBody, least_mass: float, least_inertia: float, gravity: float, density: float) -> MooredBody:
+def free_body(body: FileBody, least_mass: float, least_inertia: float, water: Water) -> MooredBody:
     """The Body of a row: weight and the buoyancy of all its volume act at its centre of gravity, as in MoorDyn."""
     arm, turn = body.turn @ body.centre, body.turn
     cross = np.cross(np.eye(3), arm)  # cross @ v = arm x v
     mass = np.zeros((6, 6))
-    mass[:3, :3] = body.mass * np.eye(3) + density * body.volume * (turn * body.added) @ turn.T
+    mass[:3, :3] = body.mass * np.eye(3) + water.density * body.volume * (turn * body.added) @ turn.T
     mass[3:, 3:] = (turn * body.inertia) @ turn.T - body.mass * cross @ cross
     mass += np.diag([least_mass] * 3 + [least_inertia] * 3)
     mass[3:, :3] = body.mass * cross
     mass[:3, 3:] = mass[3:, :3].T
-    lift = (density * body.volume - body.mass) * gravity
+    lift = (water.density * body.volume - body.mass) * water.gravity
     # A sinking body hangs below the middle, a floating one is above it; the other way round only lines turn it.
     upright = max(lift * float(arm[2]), 0.0)
-    held = HELD * max(abs(lift), body.mass * gravity, 1.0)
+    held = HELD * max(abs(lift), body.mass * water.gravity, 1.0)
     stiffness = np.diag([0.0, 0.0, 0.0, upright + held, upright + held, held])
     moment = np.cross(arm, (0.0, 0.0, lift))
     x, y, z = body.place.tolist()

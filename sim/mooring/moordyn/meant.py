@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sim.inputs.bounds import BOUNDS, WARNING, beyond
 from sim.mooring.parts import Line, LineType, Point
-from sim.water import EARTH_GRAVITY, SEA_DENSITY
+from sim.water import Water
 
 METAL = 4000.0  # [kg/m3] of a line that no fibre has
 SAME = 0.02  # of a length or a depth, up to which two are those of one design
@@ -16,18 +16,16 @@ def doubts(
     types: Iterable[LineType],
     points: Mapping[int, Point],
     lines: Mapping[int, Line],
-    depth: float,
-    options: Mapping[str, float],
+    water: Water,
 ) -> list[str]:
-    """A warning on each part of a deck that physics, or the other parts, contradict. options: those that it gives."""
+    """A warning on each part of a deck that physics, or the other parts, contradict."""
     found = [text for kind in types for text in doubts_of_type(kind)]
-    found += beyond("deck", "gravity", options.get("gravity", EARTH_GRAVITY), "OPTIONS")
-    density = options.get("density", SEA_DENSITY)
-    found += beyond("deck", "density of the water", density, "OPTIONS") if density else []
+    found += beyond("deck", "gravity", water.gravity, "OPTIONS")
+    found += beyond("deck", "density of the water", water.density, "OPTIONS") if water.density else []
     for point in points.values():
         if point.mass > 0.0 and point.volume > 0.0:
             found += beyond("point", "density", point.mass / point.volume, f"point {point.id}")
-    return [*found, *doubts_of_places(points, lines, depth), *doubts_of_lengths(points, lines)]
+    return [*found, *doubts_of_places(points, lines, water.depth), *doubts_of_lengths(points, lines)]
 
 
 def doubts_of_type(kind: LineType) -> list[str]:

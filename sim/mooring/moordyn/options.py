@@ -1,12 +1,12 @@
 """The OPTIONS of a MoorDyn file."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sim.mooring.moordyn.sections import OPTIONS, check_columns, number_in
 from sim.tables import Row, number_of
 from sim.validation import Refusals, argument_error
 
-# Options of a System, by MoorDyn's names in small letters.
+# Options of a System and of its Water, by MoorDyn's names in small letters.
 FIELDS = {
     "g": "gravity", "gravity": "gravity", "rhow": "density", "rho": "density", "wtrdnsty": "density",
     "wtrdens": "density", "wtrdpth": "depth", "depth": "depth", "kbot": "bed_stiffness", "kb": "bed_stiffness",
@@ -27,7 +27,7 @@ BED = ("seafloorfile", "bathymetryfile")
 class Options(NamedTuple):
     """The options of a file."""
 
-    fields: dict[str, float]  # of a System
+    fields: dict[str, Any]  # of a System and of its Water
     steering: list[str]  # left out, without meaning here
     warnings: list[str]  # on those that are left out and may change forces
 
@@ -57,7 +57,7 @@ def add_option(found: Options, row: Row) -> None:
             )
     elif key in BED or (key == "wtrdpth" and number_of(value) is None and "." in value):
         found.warnings.append(
-            f"{name} {value}: the bed is level here, at the depth of the lowest anchor; set `depth` of the System"
+            f"{name} {value}: the bed is level here, at the depth of the lowest anchor; set `water` of the System"
         )
     elif key in FIELDS:
         field = FIELDS[key]

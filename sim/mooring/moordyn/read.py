@@ -31,6 +31,7 @@ from sim.mooring.system import System
 from sim.mooring.turning import with_turning
 from sim.tables import Row
 from sim.validation import ConvergenceError, Refusals, argument_error
+from sim.water import Water
 
 LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the file: beyond, it is said, and refused
 
@@ -79,9 +80,10 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
     wrong.check()
     depth = depth_of(options.fields, points.values(), options.warnings)
-    fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
+    fields = {name: value for name, value in options.fields.items() if name != "depth"}
+    water = Water(depth, **{name: fields.pop(name) for name in ("gravity", "density") if name in fields})
     left.extend(add_lines(rods.values(), ends, lines))
-    options.warnings.extend(doubts(kinds.values(), points, lines, depth, options.fields))
+    options.warnings.extend(doubts(kinds.values(), points, lines, water))
     used = {end for line in lines.values() for end in (line.start, line.end)}
     for one in {end.point for end in ends.values() if points[end.point].kind in ("fixed", "coupled")} - used:
         del points[one]
@@ -93,9 +95,8 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     least = {body.id: least_inertia(body, points, lines.values()) for body in free}
     left.extend(f"body {one} has less mass or inertia than a thousandth of its lines' ends: it has that"
                 for one, (mass, _) in least.items() if mass > 0.0)  # fmt: skip
-    water = {"gravity": fields.get("gravity", System.gravity), "density": fields.get("density", System.density)}
-    moved = tuple(free_body(body, *least[body.id], **water) for body in free)
-    system = System(tuple(lines.values()), (*points.values(), *dragged), depth, moved, slack_damping=True, **fields)
+    moved = tuple(free_body(body, *least[body.id], water) for body in free)
+    system = System(tuple(lines.values()), (*points.values(), *dragged), water, moved, slack_damping=True, **fields)
     if free:
         system = turned(system, options.warnings)
     if options.steering:

@@ -39,7 +39,8 @@ def write_moordyn(system: System, path: str | Path) -> None:
         ends = f"{number[line.start]} {number[line.end]}"
         rows.append(f"{i} {line.type.name} {ends} {line.length:.17g} {line.segments} -")
     rows += ["---------------------- OPTIONS ----------------------"]
-    options = {"g": system.gravity, "rho": system.density, "WtrDpth": system.depth, "kBot": system.bed_stiffness,
+    water = system.water
+    options = {"g": water.gravity, "rho": water.density, "WtrDpth": water.depth, "kBot": system.bed_stiffness,
                "cBot": system.bed_damping, "FrictionCoefficient": system.friction}  # fmt: skip
     rows += [f"{value:.17g} {name}" for name, value in options.items()]
     rows += ["---------------------- need this line ----------------------", ""]

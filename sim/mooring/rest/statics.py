@@ -15,6 +15,7 @@ from sim.mooring.rest.balance import Laws, balanced
 from sim.mooring.rest.chains import Chains
 from sim.mooring.rest.interior import along_central_path
 from sim.mooring.tangent import six_of
+from sim.records import equal_to_itself
 from sim.springs.forces.under_water.bending import set_line_tensions
 from sim.springs.points.line_arrays import LineArrays
 from sim.validation import ConvergenceError
@@ -25,6 +26,7 @@ NEAR, NEARER = 1e-9, 1e-4  # gap at which the end is tried first, and over the l
 STALLED, SMALL = 0.9, 1e-6  # gap over the least before it, and gap: round-off ends the path there
 
 
+@equal_to_itself
 class Rest(NamedTuple):
     """A static state."""
 

@@ -47,8 +47,8 @@ class Eddies:
         """
         modes = self.expansion.modes
         damping = self.damping if self._set_damping() else out[:0]
-        return damp(u.view(float), out.view(float), damping.view(float), modes.omega, modes.gravity, decay,
-                    modes.weight, faded)  # fmt: skip
+        return damp(u.view(float), out.view(float), damping.view(float), modes.omega, modes.water.gravity,
+                    decay, modes.weight, faded)  # fmt: skip
 
     def _set_damping(self) -> bool:
         """Set `damping` to the eddies' rates of elevation and potential.

@@ -51,7 +51,7 @@ class Expansion:
         # d^j phi/dz^j at z = 0 is k^j phi, and for odd j times tanh(k depth). Twice: for real and imaginary parts.
         self._factors = {}
         for width, size in sizes.items():
-            wide = make_modes(size, modes.length, modes.depth, modes.gravity)
+            wide = make_modes(size, modes.length, modes.water)
             factors = [wide.k**j * (wide.tanh if j % 2 else 1.0) for j in range(order + 1)]
             self._factors[width] = [np.repeat(factor, 2, axis=1) for factor in factors]
         rows, columns = np.ones_like(modes.ky), np.ones_like(modes.kx)

@@ -22,16 +22,14 @@ from sim.waves import Kinematics
 class Flow:
     """The flow at one moment."""
 
-    def __init__(
-        self, modes: Modes, expansion: Expansion | None, density: float, u: np.ndarray, rate: np.ndarray
-    ) -> None:
+    def __init__(self, modes: Modes, expansion: Expansion | None, u: np.ndarray, rate: np.ndarray) -> None:
         """u, rate (2, rows, columns): spectra of elevation and potential, and their whole rates; expansion: None for
         linear waves."""
-        self.modes, self.density = modes, density
+        self.modes, depth = modes, modes.water.depth
         self.eta = parts_of(u[0], modes.weight)
         self.highest = float(np.hypot(*self.eta).sum())  # [m]: no crest or trough reaches farther
         # cosh k(z + h)/cosh kh = (e^kz + e^-k(z + 2h))/(1 + e^-2kh)
-        echo = np.zeros_like(modes.k) if math.isinf(modes.depth) else np.exp(-2.0 * modes.k * modes.depth)
+        echo = np.zeros_like(modes.k) if math.isinf(depth) else np.exp(-2.0 * modes.k * depth)
         self.decay = 1.0 / (1.0 + echo), echo / (1.0 + echo)
         flow, change = (u[1][None], rate[1][None]) if expansion is None else self._expanded(expansion, u, rate)
         self.parts = parts_of(np.stack([flow, change], axis=1), modes.weight)
@@ -61,7 +59,7 @@ class Flow:
         """The water at points (n, 3) [m]; above the surface that on it, below the bottom that at the bottom."""
         m, out = self.modes, np.empty((len(points), 2, 4))
         set_flow(points, np.array(m.length), self.eta, self.highest, self.parts, m.kx, m.ky, m.k, m.tanh, *self.decay,
-                 m.depth, out)  # fmt: skip
+                 m.water.depth, out)  # fmt: skip
         velocity = np.ascontiguousarray(out[:, 0, 1:])
-        pressure = -self.density * (out[:, 1, 0] + 0.5 * np.square(velocity).sum(1))
+        pressure = -m.water.density * (out[:, 1, 0] + 0.5 * np.square(velocity).sum(1))
         return Kinematics(velocity, np.ascontiguousarray(out[:, 1, 1:]), pressure)

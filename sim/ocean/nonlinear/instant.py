@@ -31,7 +31,7 @@ class NonlinearInstant:
     @functools.cached_property
     def flow(self) -> Flow:
         """The water below."""
-        return Flow(self.equations.modes, self.equations.expansion, self.equations.density, self.u, self.rates)
+        return Flow(self.equations.modes, self.equations.expansion, self.u, self.rates)
 
     @property
     def energies(self) -> tuple[float, float]:

@@ -42,7 +42,7 @@ class Propagator:
     def __init__(self, modes: Modes, decay: np.ndarray) -> None:
         """decay (rows, columns) [1/s]."""
         self.modes, self.decay = modes, decay
-        self._ratio = modes.omega / modes.gravity
+        self._ratio = modes.omega / modes.water.gravity
         self._inverse = np.divide(1.0, self._ratio, out=np.zeros_like(self._ratio), where=self._ratio > 0.0)
         self._latest: tuple[float, np.ndarray] = math.nan, np.empty(0)
 

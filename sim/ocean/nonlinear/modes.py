@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.ocean.dispersion import omega
 from sim.ocean.tile.amplitudes import integers
+from sim.water import Water
 
 
 class Modes(NamedTuple):
@@ -19,8 +19,7 @@ class Modes(NamedTuple):
 
     size: tuple[int, int]  # (n, m) cells along x and y
     length: tuple[float, float]  # [m] along x and y
-    depth: float  # [m], or inf
-    gravity: float  # [m/s2]
+    water: Water
     kx: np.ndarray  # (columns,) [rad/m]
     ky: np.ndarray  # (rows,) [rad/m]
     k: np.ndarray  # (rows, columns) [rad/m]
@@ -33,15 +32,15 @@ class Modes(NamedTuple):
         return float((np.real(a * np.conj(b)) @ self.weight).sum())
 
 
-def make_modes(size: tuple[int, int], length: tuple[float, float], depth: float, gravity: float) -> Modes:
+def make_modes(size: tuple[int, int], length: tuple[float, float], water: Water) -> Modes:
     """The waves of a rectangle; arguments as in the record."""
     columns, rows = size[0] // 2, size[1]
     kx = np.arange(columns) * (2.0 * math.pi / length[0])
     ky = integers(rows) * (2.0 * math.pi / length[1])
     k = np.hypot(ky[:, None], kx[None, :])
-    tanh = np.tanh(np.minimum(k * depth, 100.0)) if math.isfinite(depth) else np.where(k > 0.0, 1.0, 0.0)
+    tanh = np.tanh(np.minimum(k * water.depth, 100.0)) if math.isfinite(water.depth) else np.where(k > 0.0, 1.0, 0.0)
     weight = np.where(np.arange(columns) == 0, 1.0, 2.0)
-    return Modes(size, length, depth, gravity, kx, ky, k, tanh, omega(k, gravity, depth), weight)
+    return Modes(size, length, water, kx, ky, k, tanh, water.omega(k), weight)
 
 
 def spectrum_of(field: np.ndarray) -> np.ndarray:

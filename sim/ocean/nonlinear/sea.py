@@ -113,7 +113,7 @@ class NonlinearSea(AnySea):
         self.is_damped = breaking and self.order > 1
         eddy_scale = 2.0 * math.pi / period / k**2 if self.is_damped else None
         fade_in = FadeIn(begin.time, self.fade)
-        equations = WaveEquations(modes, self.order, self.water.density, fade_in, eddy_scale)
+        equations = WaveEquations(modes, self.order, fade_in, eddy_scale)
         self._begin(equations, u, begin.time)
         self._march: March | LinearMarch
         if self.order == 1:
@@ -256,7 +256,7 @@ class NonlinearSea(AnySea):
         They continue as linear waves; moorings take them, and `largest` selects a few.
         """
         self.advance(self.time if t is None else t)
-        return free_waves(self._equations.modes, self._now.u, self.time, self.water)
+        return free_waves(self._equations.modes, self._now.u, self.time)
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]; it does not fold."""

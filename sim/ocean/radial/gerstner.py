@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from sim.ocean.spectra import Conditions, Spectrum
-from sim.ocean.spectra.record import wavenumber_of
-from sim.validation import argument_error, check_kind, check_number, is_whole_number
+from sim.ocean.spectra.record import named_spectrum, wavenumber_of
+from sim.validation import argument_error, check_number, is_whole_number
 from sim.waves import Waves
 
 MAX_WAVES = 4096
@@ -27,41 +27,43 @@ def waves_under(
     return Waves(kx, ky, amplitude, phase, conditions.omega(np.hypot(kx, ky)), conditions.water)
 
 
-def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64, seed: int = 0) -> Waves:
+def draw_waves(
+    spectrum: str | Spectrum[Any], conditions: Conditions | None = None, count: int = 64, seed: int = 0, **values: Any
+) -> Waves:
     """`count` waves of equal energy m0/count from a spectrum: a = sqrt(2 m0/count).
 
     The energy, as a function of wavenumber, is cut into `count` equal parts; each gives the wavenumber of its middle
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
     Without wind all amplitudes are 0. A regular wave is one wave, and those of the second system, if there is one, are
-    the other `count`. All are on the water of the conditions. Raises ValueError for a count that is not 1 to 4096 or a
-    seed that is not whole.
+    the other `count`. All are on the water of the conditions, which come as a record or by name, as in
+    `Spectrum.moments`. Raises ValueError for an unknown spectrum, a condition that it does not use, a count that is not
+    1 to 4096 or a seed that is not whole.
 
-    >>> from sim.ocean import SPECTRA
-    >>> waves = draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=12.0), count=32)
+    >>> waves = draw_waves("jonswap", count=32, wind_speed=12.0)
     >>> waves.amplitude.shape
     (32,)
     """
-    check_kind("spectrum", spectrum, Spectrum, "a Spectrum, as those of SPECTRA")
-    check_kind("conditions", conditions, Conditions, "Conditions, as those of `Spectrum.conditions`")
+    spectrum = named_spectrum(spectrum)
+    own = spectrum.conditions_of(conditions, values)
     if not is_whole_number(count) or not 1 <= count <= MAX_WAVES:
         raise argument_error("count", count, f"a whole number from 1 to {MAX_WAVES}")
     if not is_whole_number(seed):
         raise argument_error("seed", seed, "a whole number")
     random = np.random.default_rng(seed)
-    if spectrum.line is not None and conditions.second_height == 0.0:
-        kx, ky, m0 = spectrum.line(conditions)
-        return waves_under(conditions, *(np.array([one]) for one in (kx, ky, math.sqrt(2.0 * m0), 0.0)))
-    k = np.geomspace(*energy_range(spectrum, conditions), CELLS)
+    if spectrum.line is not None and own.second_height == 0.0:
+        kx, ky, m0 = spectrum.line(own)
+        return waves_under(own, *(np.array([one]) for one in (kx, ky, math.sqrt(2.0 * m0), 0.0)))
+    k = np.geomspace(*energy_range(spectrum, own), CELLS)
     theta = np.arange(BEARINGS) * (2.0 * math.pi / BEARINGS)
-    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
+    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), own)
     # m0 = int int S k dk dtheta = int int S k^2 dln k dtheta
     cells = S * (k**2)[:, None] * (math.log(k[1] / k[0]) * 2.0 * math.pi / BEARINGS)
     below = np.concatenate([[0.0], np.cumsum(0.5 * (cells.sum(axis=1)[1:] + cells.sum(axis=1)[:-1]))])
     m0 = float(below[-1])
     phase = 2.0 * math.pi * random.uniform(size=count)
     if m0 <= 0.0:
-        k = np.full(count, peak_wavenumber(spectrum, conditions))
-        return waves_under(conditions, k, np.zeros(count), np.zeros(count), phase)
+        k = np.full(count, peak_wavenumber(spectrum, own))
+        return waves_under(own, k, np.zeros(count), np.zeros(count), phase)
     middles = (np.arange(count) + 0.5) / count * m0
     log_k = np.interp(middles, below, np.log(k))
     rows = np.clip(np.searchsorted(k, np.exp(log_k)), 0, CELLS - 1)
@@ -73,13 +75,13 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     wavenumber = np.exp(log_k)
     amplitude = np.full(count, math.sqrt(2.0 * m0 / count))
     if spectrum.line is not None:
-        kx, ky, m0 = spectrum.line(conditions)
+        kx, ky, m0 = spectrum.line(own)
         both = np.append(wavenumber * np.cos(bearing), kx), np.append(wavenumber * np.sin(bearing), ky)
         order = np.argsort(np.hypot(*both), kind="stable")
         single = math.sqrt(2.0 * m0)
         of_all = (*both, np.append(amplitude, single), np.append(phase, 0.0))
-        return waves_under(conditions, *(values[order] for values in of_all))
-    return waves_under(conditions, wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
+        return waves_under(own, *(values[order] for values in of_all))
+    return waves_under(own, wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
 
 
 def energy_range(spectrum: Spectrum[Any], conditions: Conditions) -> tuple[float, float]:

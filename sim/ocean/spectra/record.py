@@ -16,7 +16,16 @@ from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
-from sim.validation import argument_error, as_array, as_float, check_angle, check_kind, check_number, check_positive
+from sim.validation import (
+    argument_error,
+    as_array,
+    as_float,
+    check_angle,
+    check_choice,
+    check_kind,
+    check_number,
+    check_positive,
+)
 from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
@@ -252,6 +261,11 @@ SpreadC = TypeVar("SpreadC", bound=SpreadConditions)
 
 
 SPECTRA: dict[str, Spectrum[Any]] = {}  # by name; the package fills it
+
+
+def named_spectrum(spectrum: str | Spectrum[Any]) -> Spectrum[Any]:
+    """The spectrum of a name in SPECTRA, or the record itself. Raises ValueError for an unknown name."""
+    return spectrum if isinstance(spectrum, Spectrum) else SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
 
 
 def from_frequency(

@@ -4,9 +4,10 @@ https://www.ndbc.noaa.gov/faq/measdes.shtml describes them: alpha1 and alpha2 ar
 """
 
 import datetime
+import functools
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from sim.ocean.records.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import SECOND_EXPONENT, SECOND_PEAK, Spectrum, peaked
-from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, nearest, towards
+from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, SpectrumSeries, filled, made, towards
 from sim.ocean.spectrum_files.sea_summary import COMPASS
 from sim.tables import line_error, read_text, values_of
 from sim.validation import argument_error
@@ -44,10 +45,11 @@ class Records(NamedTuple):
     time: list[datetime.datetime]  # (n,)
     frequency: np.ndarray  # (m,) [Hz]
     values: np.ndarray  # (n, m), nan if missing
+    row: dict[datetime.datetime, int]  # of each time the first
 
 
-def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
-    """The spectrum of an NDBC file of densities, with the directions of the files beside it."""
+def from_buoy(text: str, path: Path) -> SpectrumSeries:
+    """The spectra of an NDBC file of densities, with the directions of the files beside it."""
     density = records_of(text, path)
     density = density._replace(values=without_99(density.values))
     kind = kind_of(text, path, density)
@@ -56,12 +58,17 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     whole = np.isfinite(density.values).sum(axis=1) >= 3
     if not whole.any():
         raise argument_error("path", str(path), "a file with a record of at least three densities")
-    i = nearest(density.time, when, path, whole)
+    moments = {kind: moments_of(other, kind) for kind, other in files_beside(path).items()}
+    return SpectrumSeries(path, density.time, functools.partial(spectrum_of, path, density, moments), whole)
+
+
+def spectrum_of(path: Path, density: Records, moments: Mapping[str, Records], i: int) -> Spectrum[Any]:
+    """The spectrum of a row of densities; moments: the files of directions, by their quantity."""
     time, there = density.time[i], np.isfinite(density.values[i])
     order = np.argsort(density.frequency[there])
     f, S = density.frequency[there][order], density.values[i][there][order]
-    moments = {kind: moment_at(other, kind, time, f) for kind, other in files_beside(path).items()}
-    known = {kind: values for kind, values in moments.items() if values is not None}
+    found = {kind: moment_at(records, time, f) for kind, records in moments.items()}
+    known = {kind: values for kind, values in found.items() if values is not None}
     if not {"alpha1", "r1"} <= known.keys():
         needed = "no directions: they need the files of alpha1 and of r1 at the same time"
         return made(path, time, f, S, notes=[needed] if known else [])
@@ -105,10 +112,9 @@ def files_beside(path: Path) -> dict[str, Path]:
     return {kind: other for kind, other in found.items() if other.is_file() and other != path}
 
 
-def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
-    """Values (n,) of a file of directions at this time and these frequencies [Hz]; None without them.
+def moments_of(path: Path, kind: str) -> Records:
+    """The rows of a file of directions, or of r1 or r2, which belongs to one of densities.
 
-    A missing value is that of the nearest frequency with one.
     Raises ValueError for values impossible for this kind, as in files with exchanged names.
     """
     records = records_of(read_text(path, FORMS), path)
@@ -119,10 +125,18 @@ def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndar
         raise argument_error(
             "path", str(path), f"a file of {kind}, up to {largest:g}, not {np.nanmax(records.values):g}"
         )
-    if time not in records.time:
+    return records
+
+
+def moment_at(records: Records, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
+    """Values (n,) at this time and these frequencies [Hz]; None without a record of it.
+
+    A missing value is that of the nearest frequency with one.
+    """
+    i = records.row.get(time)
+    if i is None or not np.isfinite(records.values[i]).any():
         return None
-    values = records.values[records.time.index(time)]
-    return filled(frequency, records.frequency, values) if np.isfinite(values).any() else None
+    return filled(frequency, records.frequency, records.values[i])
 
 
 def shares(r: np.ndarray) -> np.ndarray:
@@ -155,7 +169,7 @@ def records_of(text: str, path: Path) -> Records:
         raise argument_error("path", str(path), "a file with at least one record")
     values = np.array(rows)
     values[values < 0.0] = math.nan
-    return Records(times, frequency, values)
+    return Records(times, frequency, values, {time: i for i, time in reversed(list(enumerate(times)))})
 
 
 def parts_of(text: str) -> tuple[list[str], int, list[tuple[int, list[str]]]]:
@@ -211,7 +225,7 @@ def without_99(values: np.ndarray) -> np.ndarray:
     return found
 
 
-def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
+def from_summary(text: str, path: Path) -> SpectrumSeries:
     """Heights, periods and directions of a file without a spectrum, in the shape of JONSWAP with gamma 3.3.
 
     Those are swell and wind sea of an NDBC summary (.spec), or WVHT, DPD and MWD of standard meteorological data. They
@@ -234,13 +248,27 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
         rows.append([system for system in found if system is not None])
     if not any(rows):
         raise argument_error("path", str(path), f"{kind} with a record of waves")
-    i = nearest(times, when, path, [bool(systems) for systems in rows])
-    f, systems = SUMMARY_FREQUENCIES, rows[i]
-    notes = [f"{kind}, without a spectrum: heights and periods in the shape of JONSWAP"]
-    heights = [S for S, _, _ in systems]
-    if any(mean is None for _, mean, _ in systems):
-        return made(path, times[i], f, sum(heights), notes=notes)
-    total = sum(S[:, None] * spread_by_mean(DIRECTIONS, mean, np.array([s / (s + 1.0)])) for S, mean, s in systems)
+    return SpectrumSeries(
+        path,
+        times,
+        functools.partial(spectrum_of_systems, path, kind, times, rows),
+        [bool(systems) for systems in rows],
+    )
+
+
+def spectrum_of_systems(
+    path: Path,
+    kind: str,
+    times: Sequence[datetime.datetime],
+    rows: Sequence[Sequence[tuple[np.ndarray, np.ndarray | None, float]]],
+    i: int,
+) -> Spectrum[Any]:
+    """The spectrum of a row of a summary, from the `system_of` of each of its systems."""
+    f, notes = SUMMARY_FREQUENCIES, [f"{kind}, without a spectrum: heights and periods in the shape of JONSWAP"]
+    going = [(S, mean, np.array([s / (s + 1.0)])) for S, mean, s in rows[i] if mean is not None]
+    if len(going) < len(rows[i]):
+        return made(path, times[i], f, sum(S for S, _, _ in rows[i]), notes=notes)
+    total = sum(S[:, None] * spread_by_mean(DIRECTIONS, mean, first) for S, mean, first in going)
     return made(path, times[i], f, total, DIRECTIONS, notes=notes)
 
 

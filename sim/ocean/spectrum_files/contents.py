@@ -1,7 +1,7 @@
 """Common parts of all formats of spectra: times, directions, and the spectrum made of them."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from sim.ocean.records.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.sea_summary import spike_of, summary_of
+from sim.records import equal_to_itself
 from sim.validation import argument_error
 
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
@@ -65,28 +66,56 @@ def unrepeated(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, 
     return (direction[:-1], density[:, :-1]) if is_repeated else (direction, density)
 
 
-def nearest(
-    times: Sequence[datetime.datetime],
-    when: datetime.datetime | None,
-    path: Path,
-    has_data: Sequence[bool] | np.ndarray | None = None,
-) -> int:
-    """Index of the record nearest to a time, or of the last one with data. has_data: of each record, None for all.
+@equal_to_itself
+class SpectrumSeries(Mapping[datetime.datetime, Spectrum[Any]]):
+    """The spectra of a file that was read once, by their times in UTC. Records without data are left out.
 
-    Raises ValueError if none is near, or if the nearest one has no data.
+    A spectrum is computed when it is asked for. Of records of the same time it has the first.
     """
-    whole = [True] * len(times) if has_data is None else [bool(one) for one in has_data]
-    known = [one for one, has in zip(times, whole, strict=True) if has]
-    if when is None:
-        return max((j for j in range(len(times)) if whole[j]), key=times.__getitem__)
-    i = min(range(len(times)), key=lambda j: abs(times[j] - when))
-    if abs(times[i] - when) > NEAREST:
-        allowed = f"{min(known):%Y-%m-%d %H:%M} to {max(known):%Y-%m-%d %H:%M}, near a record of {path.name}"
-        raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
-    if not whole[i]:
-        next_one = min(known, key=lambda one: abs(one - when))
-        allowed = (
-            f"a time with data; the record at {times[i]:%Y-%m-%d %H:%M} has none, that at {next_one:%Y-%m-%d %H:%M} has"
-        )
-        raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
-    return i
+
+    def __init__(
+        self,
+        path: Path,
+        times: Sequence[datetime.datetime],
+        at: Callable[[int], Spectrum[Any]],
+        has_data: Sequence[bool] | np.ndarray,
+        without_data: Callable[[int], ValueError] | None = None,
+    ) -> None:
+        """at: the spectrum of a record by its index; has_data: of each record, True for at least one; without_data: the
+        error of a record without any, None for one that names the nearest time with data."""
+        self._path, self._times, self._at, self._without_data = path, times, at, without_data
+        self._has_data = [bool(one) for one in has_data]
+        records = (i for i in range(len(times)) if self._has_data[i])
+        self._index: dict[datetime.datetime, int] = {}
+        for i in sorted(records, key=times.__getitem__):
+            self._index.setdefault(times[i], i)
+
+    def __getitem__(self, time: datetime.datetime) -> Spectrum[Any]:
+        return self._at(self._index[time])
+
+    def __iter__(self) -> Iterator[datetime.datetime]:
+        return iter(self._index)
+
+    def __len__(self) -> int:
+        return len(self._index)
+
+    def nearest(self, when: datetime.datetime | None) -> Spectrum[Any]:
+        """The record nearest to a time, or the last one with data.
+
+        Raises ValueError if none is near, or if the nearest one has no data.
+        """
+        times, known = self._times, list(self._index)
+        if when is None:
+            return self[known[-1]]
+        i = min(range(len(times)), key=lambda j: abs(times[j] - when))
+        if abs(times[i] - when) > NEAREST:
+            allowed = f"{known[0]:%Y-%m-%d %H:%M} to {known[-1]:%Y-%m-%d %H:%M}, near a record of {self._path.name}"
+            raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
+        if not self._has_data[i] and self._without_data is not None:
+            raise self._without_data(i)
+        if not self._has_data[i]:
+            other = min(known, key=lambda one: abs(one - when))
+            has, lacks = (f"{one:%Y-%m-%d %H:%M}" for one in (other, times[i]))
+            allowed = f"a time with data; the record at {lacks} has none, that at {has} has"
+            raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
+        return self._at(i)

@@ -1,7 +1,9 @@
 """Text files of single instruments: Datawell's buoys (.spt) and Nortek's AWAC (lines of NMEA)."""
 
 import datetime
+import functools
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +11,7 @@ import numpy as np
 
 from sim.ocean.records.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
-from sim.ocean.spectrum_files.contents import DIRECTIONS, MAGNETIC, filled, made, nearest, towards
+from sim.ocean.spectrum_files.contents import DIRECTIONS, MAGNETIC, SpectrumSeries, filled, made, towards
 from sim.ocean.spectrum_files.tables import MEANINGS, from_columns
 from sim.tables import Row, line_error, number_of, read_columns, split_rows
 from sim.validation import argument_error
@@ -19,6 +21,8 @@ DATAWELL_COLUMNS = ["frequency", "density", "direction (deg)", "spread (deg)", "
 DATAWELL_TIME = re.compile(r"\}(\d{4}-\d\d-\d\d)T(\d\d)h(\d\d)")  # in the name of a file
 AWAC_DENSITY, AWAC_MOMENTS = "$PNORE", "$PNORF"
 CM2 = 1e-4  # [m2]
+
+Values = tuple[np.ndarray, np.ndarray]  # frequencies (n,) [Hz], and values (n,) at them
 
 
 def is_datawell(text: str) -> bool:
@@ -49,13 +53,13 @@ def from_datawell(text: str, path: Path) -> Spectrum[Any]:
     return from_columns(table._replace(notes=(MAGNETIC,)), path, time)
 
 
-def from_awac(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
-    """The spectrum of lines $PNORE (densities [cm2/Hz]) and $PNORF (Fourier coefficients of directions from).
+def from_awac(text: str, path: Path) -> SpectrumSeries:
+    """The spectra of lines $PNORE (densities [cm2/Hz]) and $PNORF (Fourier coefficients of directions from).
 
     Nortek, Integrator's Guide AWAC, NMEA format. A coefficient of -9 is missing.
     """
-    densities: dict[datetime.datetime, tuple[np.ndarray, np.ndarray]] = {}
-    moments: dict[datetime.datetime, dict[str, tuple[np.ndarray, np.ndarray]]] = {}
+    densities: dict[datetime.datetime, Values] = {}
+    moments: dict[datetime.datetime, dict[str, Values]] = {}
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.strip().partition("*")[0].split(",")
         if words[0] == AWAC_DENSITY:
@@ -67,19 +71,30 @@ def from_awac(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     if not densities:
         raise argument_error("path", str(path), f"lines {AWAC_DENSITY} with the densities of an AWAC")
     times = sorted(densities)
-    time = times[nearest(times, when, path)]
-    f, S = densities[time]
-    parts = moments.get(time, {})
+    at = functools.partial(spectrum_of, path, densities, moments, times)
+    return SpectrumSeries(path, times, at, [True] * len(times))
+
+
+def spectrum_of(
+    path: Path,
+    densities: Mapping[datetime.datetime, Values],
+    moments: Mapping[datetime.datetime, Mapping[str, Values]],
+    times: Sequence[datetime.datetime],
+    i: int,
+) -> Spectrum[Any]:
+    """The spectrum of one of the times, with directions if it has all four coefficients."""
+    f, S = densities[times[i]]
+    parts = moments.get(times[i], {})
     if not {"A1", "B1", "A2", "B2"} <= parts.keys():
-        return made(path, time, f, S, notes=[f"no directions: they need {AWAC_MOMENTS} of A1, B1, A2 and B2"])
+        return made(path, times[i], f, S, notes=[f"no directions: they need {AWAC_MOMENTS} of A1, B1, A2 and B2"])
     a1, b1, a2, b2 = (filled(f, *parts[name]) for name in ("A1", "B1", "A2", "B2"))
     if not np.isfinite([a1, b1, a2, b2]).all():
-        return made(path, time, f, S, notes=["no directions: the Fourier coefficients are missing"])
+        return made(path, times[i], f, S, notes=["no directions: the Fourier coefficients are missing"])
     D = spread_by_moments(
         DIRECTIONS, towards(np.degrees(np.arctan2(b1, a1))), np.hypot(a1, b1),
         towards(0.5 * np.degrees(np.arctan2(b2, a2))), np.minimum(np.hypot(a2, b2), 1.0),
     )  # fmt: skip
-    return made(path, time, f, S[:, None] * D, DIRECTIONS, notes=[MAGNETIC])
+    return made(path, times[i], f, S[:, None] * D, DIRECTIONS, notes=[MAGNETIC])
 
 
 def awac_line(words: list[str], path: Path, number: int) -> tuple[datetime.datetime, np.ndarray, np.ndarray]:

@@ -4,6 +4,7 @@ Places without data, such as dry ones, are skipped.
 """
 
 import datetime
+import functools
 import math
 import re
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ import numpy as np
 
 from sim.ocean.records.measured import spread_by_mean
 from sim.ocean.spectra.record import Spectrum
-from sim.ocean.spectrum_files.contents import DIRECTIONS, filled, made, nearest, unrepeated
+from sim.ocean.spectrum_files.contents import DIRECTIONS, SpectrumSeries, filled, made, unrepeated
 from sim.tables import line_error, number_of
 from sim.tables.columns import WEIGHT
 from sim.tables.headers import convention_of
@@ -79,8 +80,8 @@ class SwanHead(NamedTuple):
     quantities: list[tuple[str, str, float]]  # name, unit and the value for missing data
 
 
-def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int | None) -> Spectrum[Any]:
-    """The spectrum at a place, counted from 1, or at the first one with data at any time, and at the nearest time.
+def from_swan(text: str, path: Path, place: int | None) -> Spectrum[Any] | SpectrumSeries:
+    """The spectra at a place, counted from 1, or at the first one with data at any time; the only one without times.
 
     Raises ValueError that names the line.
     """
@@ -103,15 +104,27 @@ def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int 
     there = has_data[:, number - 1]
     if not there.any():
         raise argument_error("place", number, f"a place of {path.name} with data")
-    i = nearest(times, when, path, None if when is not None else there) if head.has_times else 0
-    if not there[i]:
-        others = ", ".join(str(one + 1) for one in np.flatnonzero(has_data[i])[:MAX_LISTED]) or "none"
-        raise argument_error("place", number, f"a place with data at {times[i]:%Y-%m-%d %H:%M}: {others}")
+    at = functools.partial(spectrum_at, lines, head, number, starts, times)
+    if not head.has_times:
+        return at(0)
+    return SpectrumSeries(path, times, at, there, functools.partial(without_data, has_data, number, times))
+
+
+def without_data(has_data: np.ndarray, number: int, times: Sequence[datetime.datetime], i: int) -> ValueError:
+    """The error of place `number` without data at one of the times; has_data (times, places)."""
+    others = ", ".join(str(one + 1) for one in np.flatnonzero(has_data[i])[:MAX_LISTED]) or "none"
+    return argument_error("place", number, f"a place with data at {times[i]:%Y-%m-%d %H:%M}: {others}")
+
+
+def spectrum_at(
+    lines: Lines, head: SwanHead, number: int, starts: Sequence[int], times: Sequence[datetime.datetime], i: int
+) -> Spectrum[Any]:
+    """The spectrum at place `number`; i: of the time, whose spectra start at `starts` in the lines."""
     lines.at = starts[i]
     for _ in range(number - 1):
         skip_block(lines, head)
     block, notes = read_block(lines, head)
-    return spectrum_of(block, head, number, path, times[i] if head.has_times else None, notes)
+    return spectrum_of(block, head, number, lines.path, times[i] if head.has_times else None, notes)
 
 
 def read_head(lines: Lines) -> SwanHead:

@@ -1,10 +1,13 @@
 """Files of wave models and of Spotter and Triaxys buoys by the library `wavespectra`, and NDBC's netCDF."""
 
+import contextlib
 import datetime
+import functools
 import importlib
 import math
 import re
 import warnings
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +17,7 @@ from sim.inputs.kinds import HEAD, WAVE_TEXTS
 from sim.ocean.records.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
-from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, MAGNETIC, made, nearest, towards, unrepeated
+from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, MAGNETIC, SpectrumSeries, made, towards, unrepeated
 from sim.validation import argument_error, unreadable
 
 NETCDF = (".nc", ".nc4", ".cdf")
@@ -34,17 +37,15 @@ def text_reader(text: str) -> str:
     return next((name for words, name, _ in WAVE_TEXTS if re.match(words, head, re.DOTALL)), "")
 
 
-def from_wavespectra(
-    path: Path, when: datetime.datetime | None, place: int | None = None, reader: str = ""
-) -> Spectrum[Any]:
-    """The spectrum at a place, counted from 1, or the first one with data, at the requested time, or the last one.
+def from_wavespectra(path: Path, place: int | None = None, reader: str = "") -> Spectrum[Any] | SpectrumSeries:
+    """The spectra at a place, counted from 1, or the first one with data; the only one of a file without times.
 
     reader: of wavespectra, for a text file.
     """
     if not path.is_file():
         raise unreadable("path", path, FileNotFoundError())
     wavespectra: Any = importlib.import_module("wavespectra")  # optional, and slow to import
-    try:
+    with refused_in_one_line(path):
         data = opened(wavespectra, path, reader)
         places = [axis for axis in data.dims if axis not in ("time", "freq", "dir")]
         notes = [MAGNETIC] if reader in MAGNETIC_READERS else []
@@ -59,13 +60,23 @@ def from_wavespectra(
                 raise argument_error("place", number, f"a place of {path.name} with data")
             data = data.isel(place=number - 1)
             notes += [f"place {number} of {count}"] if count > 1 else []
-        time, i = None, 0
-        if "time" in data.dims:
-            whole = (data > 0.0).any([axis for axis in data.dims if axis != "time"]).values
-            times = [datetime.datetime.fromisoformat(str(one)[:19]) for one in data["time"].values]
-            i = nearest(times, when, path, whole if whole.any() else None)
-            data, time = data.isel(time=i), times[i]
-        lost = data.isnull().any([axis for axis in data.dims if axis != "freq"]).values
+        if "time" not in data.dims:
+            return one_of(data, path, None, notes)
+        whole = (data > 0.0).any([axis for axis in data.dims if axis != "time"]).values
+        times = [datetime.datetime.fromisoformat(str(one)[:19]) for one in data["time"].values]
+        has_data = whole if whole.any() else np.ones(len(times), bool)
+    return SpectrumSeries(path, times, functools.partial(at_time, data, path, times, notes), has_data)
+
+
+def at_time(data: Any, path: Path, times: Sequence[datetime.datetime], notes: Sequence[str], i: int) -> Spectrum[Any]:
+    """The spectrum of one of the times."""
+    return one_of(data.isel(time=i), path, times[i], notes)
+
+
+def one_of(data: Any, path: Path, time: datetime.datetime | None, notes: Sequence[str]) -> Spectrum[Any]:
+    """The spectrum of densities [m2/Hz/degree] along freq, and dir [degrees that waves come from]."""
+    with refused_in_one_line(path):
+        notes, lost = [*notes], data.isnull().any([axis for axis in data.dims if axis != "freq"]).values
         if lost.any():
             data = data.isel(freq=np.flatnonzero(~lost))
             notes.append(f"left out, as they have no value: {int(lost.sum())} of {len(lost)} frequencies")
@@ -76,6 +87,13 @@ def from_wavespectra(
         degrees = np.asarray(data["dir"].values, float)
         theta, density = unrepeated(towards(degrees), density)
         return made(path, time, f, density, theta, notes=notes)
+
+
+@contextlib.contextmanager
+def refused_in_one_line(path: Path) -> Iterator[None]:
+    """Turn any error of `wavespectra` into a ValueError of one line."""
+    try:
+        yield
     except ValueError as error:
         if str(error).startswith(("path: ", "time: ", "place: ")):
             raise

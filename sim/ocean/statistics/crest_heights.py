@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from sim.numerics.root import narrowed
+from sim.water import Water
+from sim.waves import DEEP_SEA
 
 if TYPE_CHECKING:
     from sim.ocean.tile.sea import Sea
@@ -49,7 +51,7 @@ def high_crests(sea: "Sea", t: float | None = None) -> HighCrests:
     period = 2.0 * math.pi * m0 / float((energy * sea.frequencies).sum())
     c, hs = sea.conditions, 4.0 * math.sqrt(m0)
     k = float(c.wavenumber(np.array(2.0 * math.pi / period)))
-    crest = forristall_crest(0.5 * highest**2, hs, period, k, c.depth, c.gravity, is_long_crested=is_long)
+    crest = forristall_crest(0.5 * highest**2, hs, period, k, c.water, is_long_crested=is_long)
     return HighCrests(highest * math.sqrt(m0), crest, *narrow_band_moments(k, math.sqrt(m0), c.depth))
 
 
@@ -63,14 +65,14 @@ def most_probable_highest(count: float, power: int) -> float:
 
 
 def forristall_crest(
-    rarity: float, hs: float, period: float, k: float, depth: float, gravity: float, *, is_long_crested: bool
+    rarity: float, hs: float, period: float, k: float, water: Water = DEEP_SEA, *, is_long_crested: bool
 ) -> float:
     """The crest [m] that a wave exceeds with probability exp(-rarity), of second order.
 
     A Weibull law fitted to simulations (Forristall 2000, J. Phys. Oceanogr. 30:1931, eqs. 13 to 18). hs [m]; period
-    T1 = m0/m1 [s] and its wavenumber k [rad/m]; depth [m] or inf.
+    T1 = m0/m1 [s] and its wavenumber k [rad/m] on the water.
     """
-    steepness, ursell = 2.0 * math.pi * hs / (gravity * period**2), hs / (k**2 * depth**3)
+    steepness, ursell = 2.0 * math.pi * hs / (water.gravity * period**2), hs / (k**2 * water.depth**3)
     if is_long_crested:
         alpha = 0.3536 + 0.2892 * steepness + 0.1060 * ursell
         beta = 2.0 - 2.1597 * steepness + 0.0968 * ursell**2

@@ -13,6 +13,7 @@ import numpy as np
 
 from sim.interruption import pieces
 from sim.numerics.angles import within_half_turn
+from sim.validation import ApproximationWarning
 from sim.water import Water
 from sim.waves import Waves
 
@@ -73,7 +74,7 @@ def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float],
 
     S [m4] and unit amplitudes, (size, size); S is changed, and the other amplitudes are returned. line: kx, ky [rad/m]
     and m0 [m2]. Of a wave that is longer than the tile, or too short for its grid, the nearest is the longest, or
-    the shortest, of about its direction, and a UserWarning says so.
+    the shortest, of about its direction, and an ApproximationWarning says so.
     """
     kx, ky, m0 = line
     longest, shortest = 1.0, len(S) // 2 - 1.0
@@ -82,7 +83,7 @@ def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float],
     if beyond and m0 > 0.0:
         own, tile = 2.0 * math.pi / math.hypot(kx, ky), 2.0 * math.pi / dk
         words = f"a wave of {own:.3g} m is {beyond} of {tile:.6g} m and {len(S)} cells a side"
-        warnings.warn(f"{words}; the sea has the nearest that fits", UserWarning, stacklevel=2)
+        warnings.warn(f"{words}; the sea has the nearest that fits", ApproximationWarning, stacklevel=2)
     fitted = min(max(n, longest), shortest) / n
     i, j = round(fitted * kx / dk), round(fitted * ky / dk)
     S[i, j] += m0 / dk**2

@@ -28,7 +28,8 @@ from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.medium import Medium, medium_of
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
+from sim.ocean.spectra import PARAMETERS, Conditions, Spectrum
+from sim.ocean.spectra.record import named_spectrum
 from sim.ocean.statistics.slope_spectrum import SlopeSpectrum
 from sim.ocean.tile.amplitudes import KINDS, resolved, unit_amplitudes, with_line
 from sim.ocean.tile.query import query
@@ -312,8 +313,7 @@ def checked_conditions(
 
     Raises ValueError for an unknown spectrum or a condition that it does not use, TypeError for an unknown name.
     """
-    if not isinstance(spectrum, Spectrum):
-        spectrum = SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
+    spectrum = named_spectrum(spectrum)
     for name in values:
         if name not in _CONDITIONS | _MEDIUM:
             close = " or ".join(similar(name, _CONDITIONS | _MEDIUM))

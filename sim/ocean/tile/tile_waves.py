@@ -4,6 +4,7 @@ Full and quarter planes are as in `wavenumbers.py`. No array is changed in place
 """
 
 import copy
+import dataclasses
 import math
 from typing import NamedTuple
 
@@ -121,8 +122,7 @@ class TileWaves:
         """Book a time [s] in a medium, where waves have decayed at these rates (a quarter plane, [1/s])."""
         if duration == 0.0 or not decay.any():
             return
-        c = conditions
-        water = Conditions(gravity=c.gravity, depth=c.depth, tension=c.tension, density=c.density)
+        water = Conditions(**dataclasses.asdict(conditions.water), tension=conditions.tension)
         self.past[medium, water] = self.past.get((medium, water), 0.0) + duration
         self.lost = self.lost + decay * duration
 

@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.records import equal_to_itself
 
+
+@equal_to_itself
 class EnergyHistory(NamedTuple):
     """Energies (frames,) [J] of a run; NaN after it has diverged.
 

@@ -13,6 +13,7 @@ from sim.floating.linear.linear_table import read_table, write_table
 from sim.floating.linear.response import linear_forces
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
+from sim.validation import ApproximationWarning
 from sim.water import Water
 from tests.refusals import assert_refused
 
@@ -238,7 +239,7 @@ def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():
         lambda: float_in(shallow, [one], duration=0.1, frames=2),
         lambda: moored(1, one, 1.0, water=Water(20.0)),
     ):
-        with pytest.warns(UserWarning, match=r"water inf m deep, in water of 20 m; .* waves up to 40 m long"):
+        with pytest.warns(ApproximationWarning, match=r"water inf m deep, in water of 20 m; .* waves up to 40 m long"):
             use()
     across = draw_waves(regular, regular.conditions(wave_height=0.5, wave_period=6.0, wind_direction=1.0))
     assert_refused("bodies[0]", lambda: float_in(RadialSea(across), [one], duration=0.1, frames=2), "of that heading")

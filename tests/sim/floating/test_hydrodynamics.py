@@ -36,6 +36,7 @@ from sim.floating.linear.linear_table import table_of
 from sim.floating.motion.body import lower_factor
 from sim.floating.statics.prediction import predict
 from sim.ocean.radial.radial import RadialSea
+from sim.validation import ApproximationWarning
 from sim.waves import Waves
 
 WATER = ((1025.0, math.inf),)
@@ -301,7 +302,7 @@ def test_size_and_gravity_scale_periods() -> None:
     ],
 )
 def test_a_hull_outside_its_table_is_warned_of_by_name(hull: Hull, density: float, words: str) -> None:
-    with pytest.warns(UserWarning, match="^" + re.escape(f"{hull.shape.name}: {words} is outside")):
+    with pytest.warns(ApproximationWarning, match="^" + re.escape(f"{hull.shape.name}: {words} is outside")):
         heave_period(hull, density)
     assert predict(hull, density, WATER, 1025.0).outside == words
 

@@ -102,7 +102,7 @@ def test_yaw_in_long_waves_is_capytaines(x, y, z, ratio, heading, known) -> None
 def test_a_body_on_another_planet_and_in_two_fluids_moves_with_long_waves() -> None:
     body, heading = twenty()[1]
     w = 0.1 * first_frequency(body, 3.71)
-    found = response_amplitude(body, [w], heading, [(870.0, 0.1), (SEA, math.inf)], 3.71)[0]
+    found = response_amplitude(body, [w], heading, [(870.0, 0.1), (SEA, math.inf)], Water(gravity=3.71))[0]
     assert_moves_with_the_water(found, w**2 / 3.71, heading, 0.02)
 
 

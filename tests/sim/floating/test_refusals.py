@@ -29,6 +29,7 @@ from sim.floating import (
     submerged,
 )
 from sim.ocean import Sea
+from sim.water import Water
 from tests.refusals import Row, assert_refused, each
 
 BOX = Hull.box(1.0, 1.0, 1.0)
@@ -104,7 +105,9 @@ REFUSED: list[Row] = [
     *each(partial(metacentric_height, Body(BOX)), axis=[2, True, "roll"]),
     *each(partial(righting_arm, Body(BOX)), heel=[30.0, [0.1, NAN]]),
     *each(partial(response_amplitude, Body(BOX)), frequency=[-1.0, [0.0], [NAN], "fast"]),
-    *each(partial(response_amplitude, Body(BOX), [1.0]), heading=[NAN, "ahead"], gravity=[0.0], layers=LAYERS),
+    *each(partial(response_amplitude, Body(BOX), [1.0]), heading=[NAN, "ahead"], layers=LAYERS),
+    *each(lambda water: response_amplitude(Body(BOX), [1.0], water=water), water=[9.81, NAN]),
+    ("water: gravity", lambda: response_amplitude(Body(BOX), [1.0], water=Water(gravity=0.0)), "above 0"),
     ("center_of_gravity", lambda: response_amplitude(Body(BOX, mass=500.0, center_of_gravity=(0.1, 0, -0.4)), [1]), ""),
     *each(partial(float_in, bodies=[], duration=1.0), sea=[None, "calm"]),
     *each(partial(float_in, CALM, []), duration=[0.0, NAN, "1"]),

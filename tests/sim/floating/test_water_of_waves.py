@@ -48,12 +48,27 @@ def test_a_small_body_surges_and_sways_as_the_water_of_any_depth(depth: float) -
 
 
 @pytest.mark.parametrize("depth", DEPTHS)
+@pytest.mark.parametrize("is_moored", [True, False])
+def test_a_free_body_surges_sways_and_yaws_by_coth_in_waves_of_one_length(depth: float, is_moored: bool) -> None:
+    """Over its motion in deep water, where it yaws as a body of its shape does (Capytaine's in test_long_waves)."""
+    headings = np.array([0.3, 0.9, 2.0, -2.0])
+    k = waves(depth, headings).k[0]
+    deep = response_amplitude(SMALL, math.sqrt(9.81 * k), headings)
+    free = response_amplitude(SMALL, OMEGA, headings, water=Water(depth))
+    found = motion(SMALL, depth, headings) if is_moored else free
+    along = 1.0 / math.tanh(min(k * depth, 300.0))
+    for level in (0, 1, 5):
+        assert np.abs(deep[:, level]).min() > 0.02 * k  # not a ratio of two zeros
+        assert np.abs(found[:, level]) == pytest.approx(along * np.abs(deep[:, level]), rel=5e-3), level
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
 def test_level_motions_are_those_of_deep_water_in_waves_of_the_same_length_times_coth(depth: float) -> None:
     """Surge, sway and yaw of waves of one length: the force is that of the length, the acceleration that of time."""
     headings = np.array([0.3, 0.9, 2.0])
     k = waves(depth, headings).k[0]
     deep = math.sqrt(9.81 * k)
-    found = linear_forces(BARGE, OMEGA, headings, depth=depth).excitation
+    found = linear_forces(BARGE, OMEGA, headings, water=Water(depth)).excitation
     same_length = linear_forces(BARGE, deep, headings).excitation
     for level in (0, 1, 5):
         assert found[:, level] == pytest.approx(same_length[:, level], rel=1e-6), level
@@ -65,19 +80,22 @@ def test_level_motions_are_those_of_deep_water_in_waves_of_the_same_length_times
 
 
 def test_the_free_response_takes_the_depth_too() -> None:
-    found = response_amplitude(SMALL, OMEGA, 0.0, depth=8.0)
+    found = response_amplitude(SMALL, OMEGA, 0.0, water=Water(8.0))
     k = float(Water(8.0).wavenumber(np.array(OMEGA)))
     assert abs(found[0]) == pytest.approx(1.0 / math.tanh(8.0 * k), rel=5e-3)
-    assert_refused("depth", lambda: response_amplitude(SMALL, OMEGA, depth=0.0), "above 0")
+    assert_refused("water", lambda: response_amplitude(SMALL, OMEGA, water=8.0), "a Water")  # type: ignore[arg-type]
+    fresh = Water(8.0, density=1000.0)
+    listed = response_amplitude(SMALL, OMEGA, 0.0, ((1000.0, math.inf),), fresh)
+    np.testing.assert_array_equal(response_amplitude(SMALL, OMEGA, water=fresh), listed)
 
 
 def test_arrays_of_headings_and_frequencies_are_each_of_them_alone() -> None:
     frequencies, headings = np.array([0.3, 0.7, 1.1, 1.9]), np.array([0.0, 0.4, -1.2, 3.1, 5.0])
-    table = response_amplitude(BARGE, frequencies[:, None], headings, depth=30.0)
+    table = response_amplitude(BARGE, frequencies[:, None], headings, water=Water(30.0))
     assert table.shape == (4, 5, 6)
     for i, w in enumerate(frequencies):
         for j, heading in enumerate(headings):
-            alone = response_amplitude(BARGE, float(w), float(heading), depth=30.0)
+            alone = response_amplitude(BARGE, float(w), float(heading), water=Water(30.0))
             assert table[i, j] == pytest.approx(alone, rel=1e-9, abs=1e-12)
     pairs = linear_forces(BARGE, frequencies, headings[:4])
     assert pairs.excitation.shape == (4, 6)
@@ -108,8 +126,8 @@ def test_a_hull_below_the_bed_is_refused() -> None:
     words = "a hull of draft 2.04878 m, in water 1.2 m deep"
     sea = Sea(32, 60.0, "regular", wave_height=0.05, wave_period=6.0, wind_speed=0.0, depth=1.2)
     assert_refused("bodies[0]", lambda: float_in(sea, [body], 0.1, frames=2), words)
-    assert_refused("depth", lambda: moored(1, body, 1.0, water=Water(depth=1.2)), words)
-    assert_refused("depth", lambda: response_amplitude(body, 1.0, depth=1.2), words)
+    assert_refused("water", lambda: moored(1, body, 1.0, water=Water(1.2)), words)
+    assert_refused("water", lambda: response_amplitude(body, 1.0, water=Water(1.2)), words)
 
 
 def catamaran(gap: float = 12.0, bridge: bool = False) -> Hull:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from sim.mooring import Line, LineType, MooredBody, Point, System
+from sim.water import Water
 
 CHAIN = LineType("chain", 0.09, 80.0, 5e7, -0.8, 1.0, 1.6, 0.0, 0.1)
 TAUT = LineType("taut", 0.04, 1.1, 1.5e6, 3e4, 1.0, 1.2, 0.0, 0.05)
@@ -13,13 +14,13 @@ TAUT = LineType("taut", 0.04, 1.1, 1.5e6, 3e4, 1.0, 1.2, 0.0, 0.05)
 def chain_on_bed(segments: int) -> System:
     """Task A."""
     points = (Point(1, "fixed", (-140.0, 0.0, -40.0)), Point(2, "coupled", (0.0, 0.0, 0.0)))
-    return System((Line(1, CHAIN, 1, 2, 160.0, segments),), points, 40.0)
+    return System((Line(1, CHAIN, 1, 2, 160.0, segments),), points, Water(40.0))
 
 
 def taut_rope(segments: int) -> System:
     """Task B."""
     points = (Point(1, "fixed", (-20.0, 0.0, -50.0)), Point(2, "coupled", (0.0, 0.0, -1.0)))
-    return System((Line(1, TAUT, 1, 2, 52.0, segments),), points, 50.0)
+    return System((Line(1, TAUT, 1, 2, 52.0, segments),), points, Water(50.0))
 
 
 class Shaking:

@@ -12,13 +12,14 @@ from sim.springs.analysis.energy import energies
 from sim.springs.forces.under_water.bending import energy
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.state import State
+from sim.water import Water
 from tests.refusals import assert_refused
 from tests.sim.mooring.dense import frequencies_squared, stiffness_matrix
 from tests.sim.mooring.systems import chain_on_bed
 
+NO_WATER = Water(50.0, density=0.0)
 FILES = Path(__file__).with_name("moordyn") / "files"
 EI, LENGTH = 1e4, 10.0
-DRY = {"density": 0.0, "bed_stiffness": 0.0}
 
 
 def cantilever(segments: int, pull: float, load: float) -> System:
@@ -28,7 +29,7 @@ def cantilever(segments: int, pull: float, load: float) -> System:
         Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "free", (LENGTH, 0.0, -5.0), 1e-3, force=(pull, 0.0, -load)),
     )  # fmt: skip
     line = Line(1, kind, 1, 2, LENGTH, segments, clamp_at_start=(1.0, 0.0, 0.0))
-    return System((line,), points, 50.0, gravity=1e-9, **DRY)
+    return System((line,), points, dataclasses.replace(NO_WATER, gravity=1e-9), bed_stiffness=0.0)
 
 
 @pytest.mark.parametrize("pull", [1.0, 10.0, 100.0])
@@ -75,7 +76,7 @@ def beam(segments: int) -> System:
     """A beam of 1 N/m between two supports, with a tension of 10 N."""
     kind = LineType("beam", 0.01, 1.0 / 9.81, 1e7, 0.0, bending=1e5)
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (LENGTH, 0.0, -5.0)))
-    return System((Line(1, kind, 1, 2, LENGTH / (1.0 + 1e-6), segments),), points, 50.0, **DRY)
+    return System((Line(1, kind, 1, 2, LENGTH / (1.0 + 1e-6), segments),), points, NO_WATER, bed_stiffness=0.0)
 
 
 def test_a_beam_on_two_supports_sinks_as_its_closed_form():
@@ -128,7 +129,7 @@ def test_force_and_tangent_of_bending_are_derivatives_of_its_energy():
 def test_the_account_of_a_stiff_line_with_a_table_and_slack_damping_balances():
     kind = LineType("rope", 0.05, 5.0, 2e6, -0.3, bending=3e3, curve=((0.0, 0.0), (0.01, 1e4), (0.03, 8e4)))
     points = (Point(1, "fixed", (-20.0, 0.0, -29.0)), Point(2, "coupled", (0.0, 0.0, -5.0)))
-    system = System((Line(1, kind, 1, 2, 31.0, 12),), points, 30.0, slack_damping=True)
+    system = System((Line(1, kind, 1, 2, 31.0, 12),), points, Water(30.0), slack_damping=True)
     swing = lambda t: (1.5 * math.sin(2.0 * t), 0.0, -5.0 + 0.5 * math.sin(3.0 * t))  # noqa: E731
     run = simulate(system, duration=6.0, frames=61, step=2.5e-4, integrator="rk4", with_account=True, motion={2: swing})
     assert run.tension[1].min() < 0.0  # a slack link that shortens is damped
@@ -139,7 +140,9 @@ def test_the_account_of_a_stiff_line_with_a_table_and_slack_damping_balances():
 def test_slack_links_are_damped_on_demand_only():
     kind = LineType("rope", 0.05, 5.0, 2e6, 500.0)
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (8.0, 0.0, -5.0)))
-    system = System((Line(1, kind, 1, 2, 10.0, 2),), points, 30.0, gravity=0.0, **DRY)
+    system = System(
+        (Line(1, kind, 1, 2, 10.0, 2),), points, dataclasses.replace(NO_WATER, gravity=0.0), bed_stiffness=0.0
+    )
     from sim.springs.forces.under_water.bending import set_line_tensions
 
     x, v, out = np.array([0.0, 8.0, 4.0, 0.0, 0.0, 0.0, -5.0, -5.0, -5.0]), np.zeros(9), np.empty(2)
@@ -155,7 +158,7 @@ def test_slack_links_are_damped_on_demand_only():
 def test_a_stiff_line_diverges_at_the_step_of_the_gauge(factor, holds):
     kind = LineType("beam", 0.01, 0.1, 2e4, 0.0, bending=1e4)  # so that bending sets the step
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (10.0, 0.0, -5.0)))
-    system = System((Line(1, kind, 1, 2, 9.99, 20),), points, 50.0, **DRY)
+    system = System((Line(1, kind, 1, 2, 9.99, 20),), points, NO_WATER, bed_stiffness=0.0)
     rest = system.at_rest()
     rest.nodes[2, 2:] += 1e-6 * (-1.0) ** np.arange(19)
     step = factor * critical_step(system, "leapfrog", State.still(rest.nodes))
@@ -175,7 +178,7 @@ def test_lines_with_tables_stretch_as_their_rows_say():
         top = (float(i), 0.0, -1.0)
         points += [Point(2 * i, "fixed", top), Point(2 * i + 1, "free", (float(i), 0.0, -3.0), weight / 9.81)]
         lines.append(Line(i, kind, 2 * i, 2 * i + 1, 2.0, 4))
-    rest = System(tuple(lines), tuple(points), 50.0, **DRY).at_rest()
+    rest = System(tuple(lines), tuple(points), NO_WATER, bed_stiffness=0.0).at_rest()
     for i, strain in enumerate((0.02, 0.035, 500.0 / 2e4, 0.03 + 200.0 / 2e4)):
         assert -1.0 - rest.x[i][-1, 2] == pytest.approx(2.0 * (1.0 + strain), rel=1e-6)
 
@@ -193,14 +196,16 @@ ROWS = [
 def test_what_no_line_has_is_refused(name, fields):
     system = chain_on_bed(4)
     line = system.lines[0]
-    assert_refused(name, lambda: System((line._replace(type=line.type._replace(**fields)),), system.points, 40.0))
+    assert_refused(
+        name, lambda: System((line._replace(type=line.type._replace(**fields)),), system.points, Water(40.0))
+    )
 
 
 def test_a_clamp_of_a_line_that_does_not_resist_bending_is_refused():
     system = chain_on_bed(4)
     lines = (system.lines[0]._replace(clamp_at_end=(1.0, 0.0, 0.0)),)
-    assert_refused("line 1: clamp_at_end", lambda: System(lines, system.points, 40.0), "EI")
+    assert_refused("line 1: clamp_at_end", lambda: System(lines, system.points, Water(40.0)), "EI")
     beam = cantilever(4, 1.0, 1.0)
     for direction in ((0.0, 0.0, 0.0), (1.0, math.nan, 0.0)):
         lines = (beam.lines[0]._replace(clamp_at_start=direction),)
-        assert_refused("line 1: clamp_at_start", lambda lines=lines: System(lines, beam.points, 40.0))
+        assert_refused("line 1: clamp_at_start", lambda lines=lines: System(lines, beam.points, Water(40.0)))

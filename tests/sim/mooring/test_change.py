@@ -31,7 +31,7 @@ def test_what_is_changed_is_read_again_and_nothing_else_is() -> None:
         for line, old in zip(after.lines, before.lines, strict=True)
     ]
     assert as_before == list(before.lines)
-    assert (after.points, after.depth) == (before.points, before.depth)
+    assert (after.points, after.water) == (before.points, before.water)
     rows, others = TEXT.split(b"\r\n"), content.split(b"\r\n")
     assert [i for i, (a, b) in enumerate(zip(rows, others, strict=True)) if a != b] == [5, 16, 17]
     for i, changed in ((5, b"0.12345"), (16, b"187.123456789"), (17, b"210.0")):

@@ -7,11 +7,12 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, advance, paths_to, point_forces, simulate
 from sim.mooring.motion import paths_of
+from sim.water import Water
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import CHAIN, Shaking, chain_on_bed, in_vacuum
 
 POINTS = (Point(1, "fixed", (-50.0, 0.0, -20.0)), Point(2, "coupled", (0.0, 0.0, -5.0), mass=100.0, volume=0.05))
-HANGING = System((Line(1, CHAIN, 1, 2, 60.0, 20),), POINTS, 100.0)  # above the bed
+HANGING = System((Line(1, CHAIN, 1, 2, 60.0, 20),), POINTS, Water(100.0))  # above the bed
 
 
 def test_what_holds_a_hanging_line_bears_its_weight_in_water():
@@ -43,7 +44,7 @@ def test_momentum_of_a_line_in_a_vacuum_comes_from_what_holds_it():
     """m dv/dt of all nodes is the weight and the forces of both ends, at each of many frames."""
     kind = in_vacuum(LineType("wire", 0.02, 2.0, 1e4))
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "coupled", (8.0, 0.0, 0.0)))
-    system = System((Line(1, kind, 1, 2, 8.5, 10),), points, 100.0, density=0.0, bed_stiffness=0.0)
+    system = System((Line(1, kind, 1, 2, 8.5, 10),), points, Water(100.0, density=0.0), bed_stiffness=0.0)
     motion = {2: Shaking((8.0, 0.0, 0.0), 2, 0.5, 3.0)}
     run = simulate(system, 4.0, 2001, 2e-4, motion=motion)
     inner = 2.0 * 0.85  # [kg] of each inner node

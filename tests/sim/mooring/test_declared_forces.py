@@ -13,6 +13,7 @@ from sim.springs.forces import OWN
 from sim.springs.forces.record import Absent
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.points.line_arrays import LineArrays
+from sim.water import Water
 from tests.sim.mooring.dense import stiffness_matrix
 from tests.sim.mooring.systems import floating_body
 
@@ -29,7 +30,7 @@ def line() -> System:
         Point(3, "body", (1.0, 0.0, -1.0), body=1),
     )  # fmt: skip
     lines = Line(1, WIRE, 1, 2, 1.2, 3), Line(2, WIRE, 2, 3, 1.3, 3)
-    return System(lines, points, 5.0, (floating_body(1e4),), density=0.0)
+    return System(lines, points, Water(5.0, density=0.0), (floating_body(1e4),))
 
 
 def with_and_without(numbers: object) -> tuple[System, System]:

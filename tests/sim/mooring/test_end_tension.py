@@ -9,6 +9,7 @@ import pytest
 from sim.mooring import Line, LineType, Point, State, System, point_forces, simulate
 from sim.springs.forces.links import set_tensions
 from sim.springs.points.acceleration import set_acceleration
+from sim.water import Water
 from tests.sim.mooring.catenary import catenary
 from tests.sim.mooring.systems import Shaking
 
@@ -19,7 +20,7 @@ WEIGHT = 9.81 * (CHAIN.mass - 1025.0 * CHAIN.volume)  # [N/m] in water
 def chain(segments: int, top: float = 0.0, length: float = 210.0, is_turned: bool = False) -> System:
     points = (Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "coupled", (195.0, 0.0, top), mass=50.0))
     ends = (2, 1) if is_turned else (1, 2)
-    return System((Line(1, CHAIN, *ends, length, segments),), points, 50.0)
+    return System((Line(1, CHAIN, *ends, length, segments),), points, Water(50.0))
 
 
 @pytest.mark.parametrize("top", [0.0, -1.0])
@@ -37,7 +38,7 @@ def test_tensions_at_the_ends_are_those_of_the_catenary(top, is_turned):
 def test_tensions_at_the_ends_of_a_hanging_line_bear_its_weight():
     """Straight down from a point: nothing at the lower end, and all of the weight at the upper one."""
     points = (Point(1, "free", (0.0, 0.0, -40.0)), Point(2, "fixed", (0.0, 0.0, -10.0)))
-    rest = System((Line(1, CHAIN, 1, 2, 30.0, 6),), points, 100.0).at_rest()
+    rest = System((Line(1, CHAIN, 1, 2, 30.0, 6),), points, Water(100.0)).at_rest()
     assert rest.end_tension[1] == pytest.approx([0.0, 30.0 * WEIGHT], abs=1e-5 * WEIGHT)
 
 
@@ -50,7 +51,7 @@ def test_tensions_at_the_ends_are_the_forces_on_the_holders(bending):
         Point(3, "fixed", (130.0, 20.0, -45.0)),
     )  # fmt: skip
     lines = (Line(1, kind, 1, 2, 78.0, 12), Line(2, kind, 2, 3, 88.0, 9))
-    system = System(lines, points, 50.0, current=(0.3, 0.0, 0.0))
+    system = System(lines, points, Water(50.0), current=(0.3, 0.0, 0.0))
     run = simulate(system, 2.0, 5, motion={2: Shaking((60.0, 0.0, 0.0), 2, 2.0, 3.0)})
     assert run.end_tension[1].shape == (5, 2)
     assert run.end_tension[1][:, 0] == pytest.approx(np.linalg.norm(run.force[1], axis=1), rel=1e-9)
@@ -78,7 +79,7 @@ def test_no_link_pushes_however_fast_it_shortens_except_by_the_law_of_moordyn(se
     kind = LineType("wire", 0.02, 1.0, 4000.0, 50.0)
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (0.0, 4.0, 0.0)))
     system = System(
-        (Line(1, kind, 1, 2, 3.0, 8),), points, 10.0, density=0.0, bed_stiffness=0.0, slack_damping=slack_damping
+        (Line(1, kind, 1, 2, 3.0, 8),), points, Water(10.0, density=0.0), bed_stiffness=0.0, slack_damping=slack_damping
     )
     p, n, pushes = system.kernel_view(1.0), 9, 0
     for _ in range(50):
@@ -126,10 +127,11 @@ def test_lines_side_by_side_have_the_end_tensions_that_each_has_alone(segments, 
     points = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, -1.0)))
     lines = (Line(1, chain, 1, 2, 70.0, segments), Line(2, rope, *turned, 60.0, segments))
     alone = {
-        line.id: System((line,), points, 100.0, bed_stiffness=0.0).at_rest().end_tension[line.id] for line in lines
+        line.id: System((line,), points, Water(100.0), bed_stiffness=0.0).at_rest().end_tension[line.id]
+        for line in lines
     }
     for order in (lines, lines[::-1]):
-        rest = System(order, points, 100.0, bed_stiffness=0.0).at_rest()
+        rest = System(order, points, Water(100.0), bed_stiffness=0.0).at_rest()
         for one, expected in alone.items():
             assert rest.end_tension[one] == pytest.approx(expected, rel=1e-9)
 
@@ -147,7 +149,7 @@ def test_a_system_of_lines_costs_in_proportion_to_their_number():
         )  # fmt: skip
         lines = tuple(Line(i + 1, CHAIN, CountedId(2 * i + 1), CountedId(2 * i + 2), 70.0, 2) for i in range(n))
         CountedId.compared = 0
-        _ = System(lines, points, 30.0).line_ends
+        _ = System(lines, points, Water(30.0)).line_ends
         return CountedId.compared
 
     few, many = comparisons(50), comparisons(200)

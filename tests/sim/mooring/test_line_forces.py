@@ -23,11 +23,11 @@ LENGTH, SPACING = 20.0, 10.0  # of the line and of its two links, which are slac
 WAYS = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.48, 0.6, 0.64)]
 
 
-def one_node(way, **water) -> tuple[System, np.ndarray]:
+def one_node(way, gravity=9.81, **more) -> tuple[System, np.ndarray]:
     """A line along `way` with one inner node, and its positions (3 points) with the node last."""
     end = tuple((8.0 * np.array(way)).tolist())
     points = (Point(1, "fixed", (0.0, 0.0, -30.0)), Point(2, "fixed", (end[0], end[1], end[2] - 30.0)))
-    system = System((Line(1, ROPE, 1, 2, LENGTH, 2),), points, 60.0, bed_stiffness=0.0, **water)
+    system = System((Line(1, ROPE, 1, 2, LENGTH, 2),), points, Water(60.0, gravity), bed_stiffness=0.0, **more)
     x = np.array([point.position for point in points] + [0.5 * np.add(points[0].position, points[1].position)]).T
     return system, np.ascontiguousarray(x).reshape(-1)
 
@@ -113,7 +113,7 @@ def on_bed(friction: float, damping: float) -> tuple[System, np.ndarray]:
     """One node 1 cm deep in a bed, between ends that do not pull, without water."""
     points = (Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "fixed", (8.0, 0.0, -10.0)))
     lines = (Line(1, ROPE._replace(diameter=0.08), 1, 2, LENGTH, 2),)
-    system = System(lines, points, 10.0, density=0.0, bed_stiffness=1e5, bed_damping=damping, friction=friction)
+    system = System(lines, points, Water(10.0, density=0.0), bed_stiffness=1e5, bed_damping=damping, friction=friction)
     return system, np.array([-8.0, 8.0, 0.0, 0.0, 0.0, 0.0, -10.0, -10.0, -10.01])
 
 
@@ -150,7 +150,7 @@ def test_a_node_slides_to_rest_by_friction_and_sinks_in_by_the_damping_of_the_be
 def test_tension_of_a_link_holds_its_damping_in_the_order_of_the_line():
     kind = LineType("wire", 0.02, 1.0, 4000.0, 50.0)
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (0.0, 4.0, 0.0)))
-    p = System((Line(1, kind, 1, 2, 3.0, 2),), points, 10.0, density=0.0, bed_stiffness=0.0).kernel_view(1.0)
+    p = System((Line(1, kind, 1, 2, 3.0, 2),), points, Water(10.0, density=0.0), bed_stiffness=0.0).kernel_view(1.0)
     x, v, out, a = np.zeros(9), np.zeros(9), np.empty(2), np.empty(9)
     x[3:6], v[3:6] = (0.0, 4.0, 1.7), (0.0, 0.0, 0.4)  # the node at y = 1.7, moving towards the end
     set_tensions(x, v, p, out)
@@ -165,7 +165,7 @@ def test_tension_of_a_link_holds_its_damping_in_the_order_of_the_line():
 def test_moved_ends_work_against_the_damping_of_their_links():
     kind = LineType("wire", 0.02, 1.0, 4000.0, 50.0)
     points = (Point(1, "coupled", (0.0, 0.0, 0.0)), Point(2, "coupled", (0.0, 4.0, 0.0)))
-    p = System((Line(1, kind, 1, 2, 3.0, 2),), points, 10.0, density=0.0, bed_stiffness=0.0).kernel_view(1.0)
+    p = System((Line(1, kind, 1, 2, 3.0, 2),), points, Water(10.0, density=0.0), bed_stiffness=0.0).kernel_view(1.0)
     x, v = np.zeros(9), np.zeros(9)
     x[3:6], v[3:6] = (0.0, 4.0, 1.7), (-0.2, 0.3, 0.4)
     p.paths[:, 1, 1] = (-0.2, 0.3)
@@ -181,7 +181,7 @@ def test_the_pull_of_a_line_turns_a_body_about_its_reference_point():
     body = MooredBody(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)))
     way = np.array([0.48, 0.6, 0.64])
     points = Point(1, "body", tuple(arm.tolist()), body=1), Point(2, "fixed", tuple((arm + 4.0 * way).tolist()))
-    system = System((Line(1, kind, 1, 2, 3.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)
+    system = System((Line(1, kind, 1, 2, 3.0, 1),), points, Water(50.0, 0.0, 0.0), (body,), bed_stiffness=0.0)
     x, a = np.zeros((3, 4)), np.empty(12)
     x[:, 0], x[:, 1] = arm, arm + 4.0 * way
     set_acceleration(x.reshape(-1), np.zeros(12), 0.0, system.kernel_view(1.0), a)
@@ -197,7 +197,7 @@ def test_the_node_of_a_fairlead_has_the_mobility_of_its_body_there():
     body, arm = floating_body(), np.array([1.0, -2.0, 3.0])
     points = Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "body", tuple(arm), body=1)
     light = ROPE._replace(mass=1e-9)  # half the mass of the last link adds to the body's
-    system = System((Line(1, light, 1, 2, LENGTH, 3),), points, 20.0, (body,), density=0.0)
+    system = System((Line(1, light, 1, 2, LENGTH, 3),), points, Water(20.0, density=0.0), (body,))
     p, x = system.kernel_view(1e-3), system.start().ravel()
     set_inverse_masses(x, p)
     n, j = p.cols, int(p.carried[0, 0])

@@ -13,9 +13,10 @@ from sim.springs.kicks.lines import kick_lines, make_lines_system
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.points.line_points import set_inverse_masses
 from sim.springs.state import velocities
+from sim.water import Water
 from tests.sim.mooring.systems import Shaking, chain_on_bed
 
-DRY = {"density": 0.0, "bed_stiffness": 0.0}
+NO_WATER = Water(10.0, density=0.0)
 STEPS = [1 / 60, 1 / 240, 1 / 1200]
 HAIR = LineType("hair", 1e-9, 1e-9, 1.0, 0.0)
 
@@ -41,7 +42,7 @@ def test_a_mass_on_one_damped_segment_sinks_as_the_closed_form(damping, h, slack
     mass, k, stretch = 1.0, 20.0, 0.1
     kind = LineType("wire", 1e-9, 1e-9, k, damping)
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "free", (0.0, 0.0, -1.0 - stretch), mass))
-    system = System((Line(1, kind, 1, 2, 1.0, 1),), points, 10.0, slack_damping=slack_damping, **DRY)
+    system = System((Line(1, kind, 1, 2, 1.0, 1),), points, NO_WATER, slack_damping=slack_damping, bed_stiffness=0.0)
     x = np.array([point.position for point in points]).T
     state = moved(system, x, h, 2.0)
     matrix = np.array([[0.0, 1.0, 0.0], [-k / mass, -damping / mass, 9.81 - k * stretch / mass], [0.0, 0.0, 0.0]])
@@ -69,7 +70,13 @@ def test_a_mass_leaves_a_damped_segment_at_the_closed_form_s_speed_and_a_dashpot
     v[0, 1] = speed
     leaves, slack = 2.0 * math.acos(ratio) / turn, math.pi / turn
     for slack_damping in (False, True):
-        system = System((Line(1, kind, 1, 2, 1.0, 1),), points, 10.0, gravity=0.0, slack_damping=slack_damping, **DRY)
+        system = System(
+            (Line(1, kind, 1, 2, 1.0, 1),),
+            points,
+            dataclasses.replace(NO_WATER, gravity=0.0),
+            slack_damping=slack_damping,
+            bed_stiffness=0.0,
+        )
         state = moved(system, x, (end - start) / 4000, end - start, v)
         if slack_damping:
             back, rest = math.exp(-decay * slack) * u, 2.0 * decay * (end - slack)
@@ -88,7 +95,7 @@ def test_a_damped_chain_sags_as_the_matrix_exponential(damping, h):
     n, length, mass, stiffness = 10, 20.0, 5.0, 5e4
     kind = LineType("rope", 1e-9, mass, stiffness, damping)
     points = (Point(1, "fixed", (0.0, 0.0, -21.0)), Point(2, "fixed", (0.0, 0.0, 0.0)))
-    system = System((Line(1, kind, 1, 2, length, n),), points, 50.0, slack_damping=True, **DRY)
+    system = System((Line(1, kind, 1, 2, length, n),), points, NO_WATER, slack_damping=True, bed_stiffness=0.0)
     x = np.zeros((3, n + 1))
     x[2, system.nodes_of[1]] = np.linspace(-21.0, 0.0, n + 1)
     state = moved(system, x, h, 2.0)
@@ -113,7 +120,7 @@ def drogue() -> tuple[System, np.ndarray, float]:
         Point(1, "fixed", (0.0, 0.0, -5.0)),
         Point(2, "free", (0.0, 0.0, -50.0), 10.0, 10.0 / 1025.0, 10.0, 0.0, None, (0.0, 0.0, -1000.0)),
     )
-    system = System((Line(1, HAIR, 1, 2, 90.0, 1),), points, 2000.0)
+    system = System((Line(1, HAIR, 1, 2, 90.0, 1),), points, Water(2000.0))
     return system, np.array([point.position for point in points]).T, math.sqrt(1000.0 / (0.5 * 1025.0 * 10.0))
 
 
@@ -132,7 +139,7 @@ def test_a_thin_line_drifts_with_a_current_as_fast_as_the_water(h):
     """Its weight is nothing beside its drag: 1 mm thick, between free ends, in 1.5 m/s."""
     kind = LineType("thread", 1e-3, 1025.0 * math.pi / 4.0 * 1e-6, 1.0, 0.0)
     points = (Point(1, "free", (0.0, 0.0, -20.0)), Point(2, "free", (0.0, 0.0, -10.0)))
-    system = System((Line(1, kind, 1, 2, 10.0, 5),), points, 50.0, current=(1.5, 0.0, 0.0))
+    system = System((Line(1, kind, 1, 2, 10.0, 5),), points, Water(50.0), current=(1.5, 0.0, 0.0))
     x = np.zeros((3, 6))
     x[2, system.nodes_of[1]] = np.linspace(-20.0, -10.0, 6)
     # |w| falls as w/(1 + D w t/m), so that the line lags by (m/D) log(1 + D w t/m).
@@ -158,7 +165,7 @@ def test_a_pendulum_on_a_segment_that_hardly_lengthens_has_the_tension_of_a_rigi
     angle, length = 0.9, 2.0
     bob = (length * math.sin(angle), 0.0, -5.0 - length * math.cos(angle))
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "free", bob, 3.0))
-    system = System((Line(1, kind, 1, 2, length, 1),), points, 50.0, slack_damping=True, **DRY)
+    system = System((Line(1, kind, 1, 2, length, 1),), points, NO_WATER, slack_damping=True, bed_stiffness=0.0)
     start = State.still(np.array([point.position for point in points]).T)
     run = simulate(system, 2.0, 21, h, start=start)
     x, v = run.x[1][:, 1] - (0.0, 0.0, -5.0), run.v[1][:, 1]
@@ -172,7 +179,7 @@ def test_a_node_sinks_into_a_viscous_bed_at_its_terminal_speed(h):
     heavy, area = 40.0, 0.1 * 10.0
     kind = HAIR._replace(diameter=0.1, mass=heavy / 10.0)
     points = (Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "fixed", (8.0, 0.0, -10.0)))
-    system = System((Line(1, kind, 1, 2, 20.0, 2),), points, 10.0, density=0.0, bed_stiffness=1e-3, bed_damping=1e5)
+    system = System((Line(1, kind, 1, 2, 20.0, 2),), points, NO_WATER, bed_stiffness=1e-3, bed_damping=1e5)
     state = moved(system, np.array([[-8.0, 8.0, 0.0], [0.0, 0.0, 0.0], [-10.0, -10.0, -10.01]]), h, 2.0)
     speed = heavy * 9.81 / (area * 1e5)
     assert -10.01 - state.x[2, 2] == pytest.approx(2.0 * speed, rel=0.01)
@@ -199,7 +206,7 @@ def branched() -> System:
         square = rng.normal(size=(6, 6))
         bodies.append(MooredBody(number, place, 300.0 * (np.eye(6) + 0.05 * square @ square.T), np.zeros((6, 6)),
                                  50.0 * square @ square.T))  # fmt: skip
-    return System(lines, points, 20.0, tuple(bodies), slack_damping=True, bed_damping=200.0)
+    return System(lines, points, Water(20.0), tuple(bodies), slack_damping=True, bed_damping=200.0)
 
 
 def straight(system: System) -> np.ndarray:

@@ -31,7 +31,7 @@ def box_in_waves(heading: float) -> System:
     waves = wave(heading)
     body = moored(1, floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0), RATE, waves)
     points = Point(1, "fixed", (0.0, 0.0, -300.0)), Point(2, "body", body.place, body=1)
-    return System((Line(1, THREAD, 1, 2, 310.0, 2),), points, 300.0, (body,), waves=waves)
+    return System((Line(1, THREAD, 1, 2, 310.0, 2),), points, Water(300.0), (body,), waves=waves)
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.7])
@@ -102,7 +102,7 @@ def test_waves_in_another_water_are_refused(name, waves):
     assert_refused(name, lambda: dataclasses.replace(still, waves=waves))
     both = "waves on water 300 m deep of 1025 kg/m3 under a gravity of 9.81 .*the system's water 300 m .* of 1.62 "
     with pytest.raises(ValueError, match=both):
-        dataclasses.replace(still, waves=wave(0.0), gravity=1.62)
+        dataclasses.replace(still, waves=wave(0.0), water=Water(300.0, 1.62))
     box = floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0)
     both = r"waves on water 300 m deep of 1025 .* under a gravity of 9.81 .*the body's water .* of 1.62 m/s2"
     with pytest.raises(ValueError, match=both):
@@ -125,8 +125,8 @@ def test_a_body_and_its_waves_have_one_water():
 def test_a_fixed_point_lies_on_or_above_a_bed_that_there_is(depth, stiffness, fits):
     chain = chain_on_bed(4)
     assert chain.points[0].position[2] == -40.0
-    made = {"depth": depth, "bed_stiffness": stiffness}
+    made = {"water": Water(depth), "bed_stiffness": stiffness}
     if fits:
-        assert dataclasses.replace(chain, **made).depth == depth
+        assert dataclasses.replace(chain, **made).water.depth == depth
     else:
         assert_refused("point 1: position", lambda: dataclasses.replace(chain, **made), "above the bed at z = -39.9 m")

@@ -31,6 +31,8 @@ from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
 
+SPACE = Water(100.0, gravity=0.0, density=0.0)  # neither weight nor water
+
 
 def harmonic(t: np.ndarray, y: np.ndarray, period: float) -> tuple[float, float]:
     """Mean and amplitude of the first harmonic over the last three periods."""
@@ -70,7 +72,7 @@ def damped_alone(p, x, v, s) -> np.ndarray:
 def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(way):
     hair = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
     points = [Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "free", (0.0, 0.0, -45.0), 300.0, 0.6, 0.8, 0.5)]
-    p = System([Line(1, hair, 1, 2, 20.0, 1)], points, 50.0, bed_stiffness=0.0).kernel_view(1.0)
+    p = System([Line(1, hair, 1, 2, 20.0, 1)], points, Water(50.0), bed_stiffness=0.0).kernel_view(1.0)
     x, v, a = np.array([0.0, 0.0, 0.0, 0.0, -50.0, -45.0]), np.zeros(6), np.empty(6)
     v[1::2] = 2.0 * np.array(way)
     heavy, drag = 300.0 + 0.5 * 1025.0 * 0.6, 0.5 * 1025.0 * 0.8
@@ -88,7 +90,7 @@ def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(w
 def test_a_line_without_water_and_bed_is_a_rope(integrator):
     kind = LineType("rope", 0.02, 3.0, 2000.0, 0.0 if integrator == "leapfrog" else 15.0)
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (2.0, 0.0, 0.3)))
-    system = System((Line(1, kind, 1, 2, 1.5, 12),), points, 10.0, density=0.0, bed_stiffness=0.0)
+    system = System((Line(1, kind, 1, 2, 1.5, 12),), points, Water(10.0, density=0.0), bed_stiffness=0.0)
     spacing = 1.5 / 12
     net = springs.rope(
         13, 1.5, 3.0 * spacing, 2000.0 / spacing, kind.damping / spacing, 0.0, root=(0.0, 0.0, 0.0),
@@ -109,7 +111,7 @@ def suspended_in_waves() -> tuple[System, Rest]:
     )  # fmt: skip
     kind = LineType("rope", 0.08, 12.0, 4e4, 200.0, 1.0, 1.2, 0.3, 0.05)
     points = (Point(1, "fixed", (0.0, 0.0, -40.0)), Point(2, "fixed", (30.0, 5.0, -2.0)))
-    system = System((Line(1, kind, 1, 2, 46.0, 8),), points, 60.0, current=(0.4, 0.1, 0.0), waves=waves)
+    system = System((Line(1, kind, 1, 2, 46.0, 8),), points, Water(60.0), current=(0.4, 0.1, 0.0), waves=waves)
     return system, system.at_rest()
 
 
@@ -164,7 +166,7 @@ def moored_body(surge: float) -> System:
         Point(3, "body", (2.0, 0.0, 0.0), body=1), Point(4, "fixed", (40.0, 0.0, 0.0)),
     )  # fmt: skip
     lines = (Line(1, kind, 1, 2, 37.9, 10), Line(2, kind, 3, 4, 37.9, 10))
-    return System(lines, points, 100.0, bodies=(floating_body(surge),), gravity=0.0, density=0.0, bed_stiffness=0.0)
+    return System(lines, points, SPACE, bodies=(floating_body(surge),), bed_stiffness=0.0)
 
 
 def test_a_moored_body_without_losses_keeps_its_energy_and_surges_at_the_linear_frequency():
@@ -202,12 +204,12 @@ def test_a_body_takes_the_pull_of_its_lines_as_a_rope_of_heavy_ends_does():
     body = floating_body()._replace(mass=np.diag([50.0] * 3 + [1e9] * 3), stiffness=np.zeros((6, 6)))
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "body", (10.0, 0.0, 0.0), body=1))
     carried = System(
-        (Line(1, kind, 1, 2, 10.0, 5),), points, 100.0, bodies=(body._replace(place=(10.0, 0.0, 0.0)),), gravity=0.0,
-        density=0.0, bed_stiffness=0.0,
+        (Line(1, kind, 1, 2, 10.0, 5),), points, SPACE,
+        bodies=(body._replace(place=(10.0, 0.0, 0.0)),), bed_stiffness=0.0,
     )  # fmt: skip
     free = System(
-        (Line(1, kind, 1, 2, 10.0, 5),), (points[0], Point(2, "free", (10.0, 0.0, 0.0), mass=50.0)), 100.0, gravity=0.0,
-        density=0.0, bed_stiffness=0.0,
+        (Line(1, kind, 1, 2, 10.0, 5),), (points[0], Point(2, "free", (10.0, 0.0, 0.0), mass=50.0)), SPACE,
+        bed_stiffness=0.0,
     )  # fmt: skip
     nodes = np.zeros((3, 6))
     nodes[0] = (0.0, 10.4, *np.linspace(0.0, 10.4, 6)[1:-1])
@@ -239,7 +241,7 @@ def test_a_line_diverges_at_the_step_of_the_gauge(lines, integrator):
                         -rng.uniform(0.1, 0.8))  # fmt: skip
         span = rng.uniform(0.95, 0.99) * math.sqrt(length**2 - depth**2)  # no link of it is slack
         points = (Point(1, "fixed", (-span, 0.0, -depth)), Point(2, "fixed", (0.0, 0.0, 0.0)))
-        system = System((Line(1, kind, 1, 2, length, int(rng.integers(10, 30))),), points, depth)
+        system = System((Line(1, kind, 1, 2, length, int(rng.integers(10, 30))),), points, Water(depth))
         rest = system.at_rest()
         h = critical_step(system, integrator, State.still(rest.nodes))
         assert not grows(system, rest, integrator, 0.95 * h)
@@ -288,7 +290,9 @@ def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
     damping = np.diag([0.0, 0.0, 2e4, 3e4, 0.0, 0.0])
     body = floating_body()._replace(mass=np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4]), damping=damping)
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "body", (0.0, 0.0, 0.0), body=1))
-    system = System((Line(1, kind, 1, 2, 50.0, 2),), points, 100.0, bodies=(body,), density=0.0, bed_stiffness=0.0)
+    system = System(
+        (Line(1, kind, 1, 2, 50.0, 2),), points, Water(100.0, density=0.0), bodies=(body,), bed_stiffness=0.0
+    )
     nodes = np.zeros((3, 5))
     nodes[2] = (-5.0, 0.3, -2.0, 0.3, 0.0)
     nodes[0, 4] = 0.1
@@ -323,7 +327,7 @@ def test_each_body_has_its_own_row_of_a_run():
         )
     )
     lines = tuple(Line(i, kind, i, 10 * i, 8.0, 4) for i in (1, 2))
-    system = System(lines, points, 30.0, bodies, density=0.0)
+    system = System(lines, points, Water(30.0, density=0.0), bodies)
     start = State.at_rest(system)
     places, at = start.x[:, -4:].T.reshape(2, 6).copy(), system.node_count + 2
     start.x[:, at], start.x[:, at + 1] = start.x[:, at] + (0.1, 0.2, 0.3), (0.01, 0.02, 0.03)
@@ -354,7 +358,7 @@ def test_damping_of_a_body_decays_as_the_closed_form_and_limits_no_step(rate):
     body = MooredBody(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)), damping)
     hair = LineType("hair", 1e-9, 1e-9, 1e-9, 0.0)
     points = Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "body", (0.0, 0.0, 0.0), body=1)
-    system = System((Line(1, hair, 1, 2, 80.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0)
+    system = System((Line(1, hair, 1, 2, 80.0, 1),), points, Water(50.0, gravity=0.0, density=0.0), (body,))
     p, s = system.kernel_view(1.0), 0.4
     x, v = np.zeros((3, 4)), np.zeros((3, 4))
     v[:, 2:] = rng.normal(size=(3, 2))
@@ -380,7 +384,7 @@ def damped(rate: float) -> System:
     )  # fmt: skip
     lines = (Line(1, wire, 1, 2, 38.9, 8), Line(2, wire, 3, 4, 38.9, 8))
     body = MooredBody(1, (0.0, 0.0, 0.0), 1e4 * np.eye(6), 1e4 * np.eye(6), rate * 1e4 * np.eye(6))
-    return System(lines, points, 100.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)
+    return System(lines, points, SPACE, (body,), bed_stiffness=0.0)
 
 
 @pytest.mark.parametrize("rate", [0.5, 200.0, 2e3, 2e5])

@@ -11,6 +11,7 @@ import pytest
 from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn
 from sim.springs import INTEGRATORS, State
 from sim.springs.stability import top_modes
+from sim.water import Water
 from tests.sim.mooring.dense import Array, frequencies_squared, longest_steps, unit_mass_matrices
 from tests.sim.mooring.systems import chain_on_bed, taut_rope
 
@@ -76,7 +77,9 @@ def test_a_slack_link_counts_as_one_that_is_just_taut():
 def test_of_long_lines_only_products_are_taken():
     kind = LineType("chain", 0.1, 80.0, 5e8)
     points = (Point(1, "fixed", (0.0, 0.0, -200.0)), Point(2, "coupled", (800.0, 0.0, 0.0)))
-    steps = [critical_step(System((Line(1, kind, 1, 2, 850.0, n),), points, 200.0), "leapfrog") for n in (100, 2000)]
+    steps = [
+        critical_step(System((Line(1, kind, 1, 2, 850.0, n),), points, Water(200.0)), "leapfrog") for n in (100, 2000)
+    ]
     assert steps[0] / steps[1] == pytest.approx(20.0, rel=1e-3)  # 2/omega = l sqrt(m/EA)
 
 

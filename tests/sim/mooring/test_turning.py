@@ -7,6 +7,7 @@ import pytest
 
 from sim.mooring import Line, LineType, MooredBody, Point, System, read_moordyn
 from sim.mooring.turning import stiffness_of_turning, with_turning
+from sim.water import Water
 from tests.sim.mooring.dense import frequencies_squared
 
 LENGTH, ARM, MASS, INERTIA, LIFT = 30.0, 2.0, 5e3, 1.2e4, 6e4
@@ -21,7 +22,7 @@ def tethered(lift: float = LIFT) -> System:
     body = MooredBody(
         1, (0.0, 0.0, LENGTH + ARM - 50.0), mass, np.diag([0.0] * 3 + [1.0] * 3), steady=(0, 0, lift, 0, 0, 0)
     )
-    return System((Line(1, kind, 1, 2, LENGTH, 1),), points, 60.0, (body,), density=0.0)
+    return System((Line(1, kind, 1, 2, LENGTH, 1),), points, Water(60.0, density=0.0), (body,))
 
 
 def test_a_tethered_body_swings_as_the_double_pendulum_does():

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import measured_spectrum, read_record, read_spectrum, recorded_waves
-from sim.ocean.spectrum_files.buoys import moment_at, records_of, without_99
+from sim.ocean.spectrum_files.buoys import moment_at, moments_of, records_of, without_99
 from sim.ocean.spectrum_files.sea_summary import bearing_of
 from sim.tables.rows import split_rows
 from sim.tables.text import MAX_BYTES
@@ -423,7 +423,8 @@ def test_digits_of_9_of_a_buoy_are_missing_by_its_own_rule_only(beside, tmp_path
         assert np.isnan(without_99(np.array([[1.0, 2.0, 99.0, 3.0]]))).tolist() == [[False, False, True, False]]
     else:
         f = np.array([0.08, 0.09, 0.10, 0.11, 0.12, 0.13])
-        found = moment_at(tmp_path / "46999d2021.txt", "alpha1", datetime.datetime(2021, 3, 5, 4, 40), f)
+        records = moments_of(tmp_path / "46999d2021.txt", "alpha1")
+        found = moment_at(records, datetime.datetime(2021, 3, 5, 4, 40), f)
         assert found is not None
         assert found.tolist() == [40, 45, 99, 210, 210, 220]
 

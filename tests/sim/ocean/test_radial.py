@@ -15,6 +15,7 @@ from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
 from sim.waves import Waves
 from tests.naive_ocean import plane_integral
+from tests.refusals import assert_refused
 
 MONTH = 30 * 24 * 3600.0
 WIND = SPECTRA["jonswap"].conditions(wind_speed=8.0)
@@ -50,6 +51,22 @@ def test_the_sum_has_the_height_of_its_spectrum_within_a_percent(name: str, coun
     wind = SPECTRA[name].conditions(wind_speed=8.0)
     expected = 4.0 * math.sqrt(plane_integral(SPECTRA[name], wind))
     assert draw_waves(SPECTRA[name], wind, count).significant_height == pytest.approx(expected, rel=0.01)
+
+
+def test_conditions_come_by_name_or_as_a_record() -> None:
+    record = SPECTRA["tma"].conditions(wind_speed=9.0, depth=25.0)
+    one = draw_waves(SPECTRA["tma"], record, 16, seed=3)
+    for other in (
+        draw_waves("tma", record, 16, seed=3),
+        draw_waves("tma", count=16, seed=3, wind_speed=9.0, depth=25.0),
+        draw_waves("tma", SPECTRA["tma"].conditions(wind_speed=9.0), 16, seed=3, depth=25.0),
+    ):
+        assert other.water == one.water
+        for name in ("kx", "ky", "amplitude", "phase", "omega"):
+            np.testing.assert_array_equal(getattr(other, name), getattr(one, name))
+    assert_refused("spectrum", lambda: draw_waves("tmma"), "tma")
+    assert_refused("hs", lambda: draw_waves("tma", hs=2.0), "sea_state")
+    assert_refused("depth", lambda: draw_waves("tma", depth=-1.0))
 
 
 def test_the_drawn_surface_has_that_height_too() -> None:

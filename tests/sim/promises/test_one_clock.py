@@ -26,7 +26,7 @@ BODIES[1] = BODIES[1]._replace(position=(30.0, 12.0, BODIES[1].position[2]))
 CHAIN = LineType("chain", 0.1, 200.0, 1e8)
 POINTS = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, -1.0)))
 WAVES = Waves([0.06, 0.11], [0.0, 0.03], [1.0, 0.4], [0.3, 2.0], water=Water(30.0))
-MOORING = System((Line(1, CHAIN, 1, 2, 70.0, 8),), POINTS, depth=30.0, waves=WAVES)
+MOORING = System((Line(1, CHAIN, 1, 2, 70.0, 8),), POINTS, water=Water(30.0), waves=WAVES)
 
 
 def changed() -> Sea:

@@ -1,18 +1,26 @@
 """Public records are what their names promise: copies that nobody can change, comparable, hashable and picklable."""
 
 import copy
+import dataclasses
 import pickle
+import re
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
-from sim.floating import Body, FloatState, Hull
-from sim.mooring import Line, LineType, MooredBody, Point, System
-from sim.ocean import SPECTRA, NonlinearSea, RadialSea, Sea, draw_waves
-from sim.springs import State, advance, cloth, rope
+import sim.floating
+import sim.mooring
+import sim.ocean
+import sim.springs
+from sim.floating import Body, FloatState, Hull, float_in, linear_forces, make_fleet
+from sim.mooring import Line, LineType, MooredBody, Point, System, moored
+from sim.ocean import SPECTRA, NonlinearSea, RadialSea, Sea, draw_waves, stokes_wave
+from sim.springs import State, advance, cloth, rope, simulate
 from sim.springs.net import Net
+from sim.springs.statics import catenary
 from sim.water import Water
 from sim.waves import Waves
 from tests.refusals import assert_refused
@@ -23,7 +31,7 @@ JONSWAP = SPECTRA["jonswap"]
 
 
 def system(**more: Any) -> System:
-    return System((Line(1, CHAIN, 1, 2, 70.0, 5),), POINTS, depth=30.0, **more)
+    return System((Line(1, CHAIN, 1, 2, 70.0, 5),), POINTS, water=Water(30.0), **more)
 
 
 def waves() -> Waves:
@@ -38,30 +46,60 @@ RECORDS: dict[str, Callable[[], Any]] = {
     "sea": lambda: Sea(32, 100.0), "nonlinear sea": lambda: NonlinearSea(32, 100.0, start=Sea(32, 100.0)),
     "radial sea": lambda: RadialSea(draw_waves(JONSWAP, JONSWAP.conditions(wind_speed=9.0), 8)),
     "float state": lambda: FloatState(Sea(32, 100.0), [Body(Hull.box(1.0, 1.0, 0.5)).afloat()]),
+    "fleet": lambda: make_fleet([Body(Hull.box(1.0, 1.0, 0.5)).afloat()]), "rest": lambda: system().at_rest(),
+    "run": lambda: simulate(rope(5), 0.1, 3), "energy": lambda: simulate(rope(5), 0.1, 3).energy,
+    "mooring run": lambda: simulate(system(), duration=0.1, frames=3),
+    "float run": lambda: float_in(Sea(32, 100.0), [Body(Hull.box(1.0, 1.0, 0.5)).afloat()], duration=0.1, frames=3),
+    "forces": lambda: linear_forces(Body(Hull.box(4.0, 4.0, 2.0)), [1.0, 2.0]), 
+    "stokes": lambda: stokes_wave(1.0, 50.0), "catenary": lambda: catenary(20, 1.2, 0.9, 0.0, 1e4, 0.01, 9.81),
+    "loaded": lambda: Body(Hull.box(1.0, 1.0, 1.0), mass=500.0, inertia=np.array([50.0, 60.0, 70.0])),
+    "moored": lambda: moored(1, Body(Hull.box(4.0, 4.0, 2.0)), 1.0),
+    "with body": lambda: system(bodies=(RECORDS["moored"](),)), "at": lambda: Sea(32, 100.0).at([[1.0, 2.0]], 0.0),
+    "kinematics": lambda: Sea(32, 100.0).kinematics([[1.0, 2.0, -3.0]], 0.0),
 }  # fmt: skip
 MUTABLE = {"state"}
 
 
 def arrays_of(record: Any) -> list[np.ndarray]:
-    return (
-        [value for value in vars(record).values() if isinstance(value, np.ndarray)]
-        if hasattr(record, "__dict__")
-        else []
-    )
+    if dataclasses.is_dataclass(record):
+        values = [getattr(record, field.name) for field in dataclasses.fields(record)]
+    else:
+        values = list(record) if isinstance(record, tuple) else list(vars(record).values())
+    return [value for value in values if isinstance(value, np.ndarray)]
 
 
 @pytest.mark.parametrize("name", RECORDS)
 def test_a_record_can_be_compared_hashed_shown_copied_and_saved(name: str) -> None:
     one, other = RECORDS[name](), RECORDS[name]()
     assert one == one
-    assert isinstance(one == other, bool)
+    for same in (one == other, one != other, [one] == [other], (0, one) == (0, other)):
+        assert isinstance(same, bool)
+    assert (one == other) != (one != other)
     assert isinstance(hash(one), int)
     assert repr(one)
     for again in (pickle.loads(pickle.dumps(one)), copy.deepcopy(one), copy.copy(one)):
         assert type(again) is type(one)
-        assert len(arrays_of(again)) >= 0
-        for before, after in zip(arrays_of(one), arrays_of(again), strict=False):
+        for before, after in zip(arrays_of(one), arrays_of(again), strict=True):
             np.testing.assert_array_equal(before, after)
+
+
+@pytest.mark.parametrize("package", [sim.floating, sim.mooring, sim.ocean, sim.springs])
+def test_every_public_record_of_arrays_is_equal_to_itself_only(package: ModuleType) -> None:
+    public = [getattr(package, name) for name in package.__all__]
+    for kind in [kind for kind in public if isinstance(kind, type) and hasattr(kind, "_fields")]:
+        if any(re.search(r"^[^\[]*(Array|ndarray)|dict.*Array", str(one)) for one in kind.__annotations__.values()):
+            assert (kind.__eq__, kind.__ne__, kind.__hash__) == (object.__eq__, object.__ne__, object.__hash__), kind
+
+
+def test_a_water_is_a_value() -> None:
+    fresh = Water(40, 9.81, 1000)
+    assert fresh == Water(np.float64(40.0), density=np.float32(1000.0))  # type: ignore[arg-type]
+    assert {fresh: 1}[Water(40.0, density=1000.0)] == 1
+    assert all(type(value) is float for value in dataclasses.astuple(fresh))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        fresh.depth = 3.0  # type: ignore[misc]
+    for name in ("depth", "gravity", "density"):
+        assert_refused(name, lambda name=name: Water(**{name: -1.0}))  # type: ignore[misc]
 
 
 def test_a_saved_sea_is_the_same_sea() -> None:

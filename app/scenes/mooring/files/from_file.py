@@ -63,7 +63,7 @@ def mooring_of(path: str, changes: Changes = ()) -> FileMooring:
     places = np.array([point.position for point in system.points])
     middle = np.mean(places[list(vessel)] if vessel else places, axis=0)[:2]
     reach = float(np.hypot(*places[:, :2].T).max())
-    extent = max(reach, 1.2 * system.depth, LEAST_EXTENT)
+    extent = max(reach, 1.2 * system.water.depth, LEAST_EXTENT)
     arms = np.linalg.norm(places[list(vessel), :2] - middle, axis=1)
     reverse = [is_reversed(system, line.start, line.end) for line in system.lines]
     held = tuple(

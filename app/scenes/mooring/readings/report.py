@@ -128,7 +128,7 @@ def file_text(params: MooringParams, fault: Fault | None) -> Html:
     count = fill(
         "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(params.moordyn_file).name),
         counted(len(system.lines), "line"), counted(len(system.points), "point"), len(found.vessel),
-        metres(system.depth),
+        metres(system.water.depth),
     )  # fmt: skip
     said = [] if fault is None else [coloured(fault.said, WARNING_COLOUR)]
     notes = (*said, *found.notes, *raised_points(found))

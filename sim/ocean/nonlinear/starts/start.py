@@ -12,7 +12,6 @@ from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
 from sim.ocean.spectra import Conditions
 from sim.ocean.tile.sea import LENGTHS, SIZES, Sea
 from sim.validation import argument_error, as_array, check_number, is_whole_number
-from sim.water import Water
 from sim.waves import Waves
 
 ALLOWED = "a Sea, Waves, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
@@ -50,7 +49,7 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: flo
             raise argument_error(name, value, f"that of the waves it starts from, {own[name]:g}")
     own.pop("length", None)
     conditions = Conditions(**(given | own))
-    modes = make_modes(checked_size(size), sides_of(length), conditions.depth, conditions.gravity)
+    modes = make_modes(checked_size(size), sides_of(length), conditions.water)
     return Start(modes, linear_start(waves, modes, time), conditions, time, True)
 
 
@@ -67,7 +66,7 @@ def of_fields(start: Any, size: Any, length: Any, water: dict[str, Any], time: f
     conditions = Conditions(**water)
     u = np.array([spectrum_of(field.reshape(n, m)) for field in fields])
     u[1, 0, 0] = 0.0  # a constant of the potential moves nothing
-    return Start(make_modes((n, m), sides_of(length), conditions.depth, conditions.gravity), u, conditions, time, False)
+    return Start(make_modes((n, m), sides_of(length), conditions.water), u, conditions, time, False)
 
 
 def checked_size(size: Any) -> tuple[int, int]:
@@ -97,7 +96,7 @@ def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
             for k, side in zip((waves.kx, waves.ky), modes.length, strict=True))  # fmt: skip
     # a cos(k.x - omega t + phase), and its potential (g/omega) a sin(...)
     wave = 0.5 * waves.amplitude * np.exp(1j * (waves.phase - waves.omega * t))
-    spectra = wave, -1j * modes.gravity / np.where(waves.omega > 0.0, waves.omega, math.inf) * wave
+    spectra = wave, -1j * modes.water.gravity / np.where(waves.omega > 0.0, waves.omega, math.inf) * wave
     u = np.zeros((2, m, n // 2), complex)
     there = (np.abs(i) < n // 2) & (np.abs(j) < max(m // 2, 1))
     for field, values in zip(u, spectra, strict=True):
@@ -108,7 +107,7 @@ def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
     return u
 
 
-def free_waves(modes: Modes, u: np.ndarray, t: float, water: Water) -> Waves:
+def free_waves(modes: Modes, u: np.ndarray, t: float) -> Waves:
     """The linear waves that have these spectra (2, rows, columns) of elevation and potential at time t [s].
 
     A wave of the half plane and its complex conjugate, at -k, are one. So are the two halves of the column kx = 0.
@@ -116,17 +115,17 @@ def free_waves(modes: Modes, u: np.ndarray, t: float, water: Water) -> Waves:
     KX, KY = np.broadcast_arrays(modes.kx, modes.ky[:, None])
     there = ((KX > 0.0) | (KY > 0.0)) & u.any(axis=0)
     kx, ky, omega = KX[there], KY[there], modes.omega[there]
-    turned = 1j * omega / modes.gravity * u[1][there]
+    turned = 1j * omega / modes.water.gravity * u[1][there]
     onward, back = u[0][there] + turned, np.conj(u[0][there] - turned)
     waves, frequency = np.concatenate([onward, back]), np.tile(omega, 2)
     phase = np.angle(waves) + frequency * t
     kx, ky = np.concatenate([kx, -kx]), np.concatenate([ky, -ky])
-    return Waves(kx, ky, np.abs(waves), within_half_turn(phase), frequency, water)
+    return Waves(kx, ky, np.abs(waves), within_half_turn(phase), frequency, modes.water)
 
 
 def resized(modes: Modes, u: np.ndarray, size: tuple[int, int]) -> tuple[Modes, np.ndarray]:
     """Modes of a grid of another size on the same rectangle, and the spectra (2, rows, columns) on it."""
-    new = make_modes(size, modes.length, modes.depth, modes.gravity)
+    new = make_modes(size, modes.length, modes.water)
     columns, rows = min(size[0], modes.size[0]) // 2, max(min(size[1], modes.size[1]) // 2, 1)
     out, row = np.zeros((2, len(new.ky), len(new.kx)), complex), np.arange(1 - rows, rows)
     out[:, row, :columns] = u[:, row, :columns]

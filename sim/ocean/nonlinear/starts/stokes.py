@@ -20,7 +20,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.validation import ConvergenceError, argument_error, as_array, check_positive, is_whole_number
+from sim.validation import ConvergenceError, argument_error, as_array, check_positive, is_whole_number, read_only
 from sim.water import EARTH_GRAVITY
 
 ORDERS = (1, 60)
@@ -30,7 +30,7 @@ HEIGHT_STEP = 0.02  # of the height over the wavelength: each solution starts th
 TINY = 1e-30  # imaginary part of a complex-step derivative
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class StokesWave:
     """A wave of constant form with its crest at x = 0 at first; it travels to +x. Made by `stokes_wave`."""
 
@@ -85,7 +85,8 @@ def stokes_wave(
     ends = np.where((n == 0) | (n == order), 0.5, 1.0)
     cosines = 2.0 / order * ends * (np.cos(np.outer(n, n) * math.pi / order) @ (ends * z[: order + 1])) / k
     sines = z[order + 1 : -3] * math.sqrt(gravity / k**3)
-    return StokesWave(height, wavelength, depth, gravity, float(z[-3]) * math.sqrt(gravity / k), cosines, sines)
+    speed = float(z[-3]) * math.sqrt(gravity / k)
+    return StokesWave(height, wavelength, depth, gravity, speed, read_only(cosines), read_only(sines))
 
 
 def linear_wave(steepness: float, kd: float, order: int) -> np.ndarray:

@@ -24,6 +24,7 @@ from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.mooring.scene import needs
 from sim.mooring import Line, Point, System
 from sim.mooring.rest.statics import at_rest
+from sim.water import Water
 
 FILES = Path(__file__).parents[3] / "sim" / "mooring" / "moordyn" / "files"
 SMALL: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 10.0, "time_step": 1 / 120, "wave_height": 0.0}
@@ -58,7 +59,7 @@ def level_tension(lines: tuple[Line, ...], span: float, rise: float, depth: floa
     first, last = lines[0].start, lines[-1].end
     points = [Point(first, "fixed", (0.0, 0.0, -depth)), Point(last, "coupled", (span, 0.0, rise - depth))]
     points += [Point(line.end, "free", (0.5 * span, 0.0, 0.5 * rise - depth)) for line in lines[:-1]]
-    rest = System(lines, tuple(points), depth).at_rest()
+    rest = System(lines, tuple(points), Water(depth)).at_rest()
     way = rest.x[lines[-1].id][-1] - rest.x[lines[-1].id][-2]
     return float(rest.tension[lines[-1].id][-1] * way[0] / np.linalg.norm(way))
 

@@ -165,8 +165,9 @@ def test_lines_and_points_of_a_file(tmp_path):
 def test_fixed_points_above_the_bed_and_the_water_are_said(tmp_path):
     hung = edited(tmp_path, "stiff_cable", ("Coupled", "Fixed"))
     scene = FileScene(MooringParams(moordyn_file=hung, time_step=2e-4))
-    heights = [point.position[2] + scene.system.depth for point in scene.file.system.points if point.kind == "fixed"]
-    raised = [h for h in heights if h > 1e-3 * scene.system.depth]
+    depth = scene.system.water.depth
+    heights = [point.position[2] + depth for point in scene.file.system.points if point.kind == "fixed"]
+    raised = [h for h in heights if h > 1e-3 * depth]
     found = warnings(scene)
     assert len(found) == len(raised) > 0
     assert all("above the bed" in said or "above the water" in said for said in found)

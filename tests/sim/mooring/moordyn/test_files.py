@@ -8,6 +8,7 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, System, read_moordyn, simulate, write_moordyn
 from sim.springs import rope
+from sim.water import Water
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import chain_on_bed, floating_body
 
@@ -70,7 +71,7 @@ def test_without_a_depth_the_water_is_as_deep_as_its_lowest_anchor(tmp_path):
     text = TEXT.replace("40       WtrDpth\n", "").replace(
         "2     Coupled    0.0    0.0     0.0", "2  Fixed  0.0  0.0  -9.0"
     )
-    assert read_moordyn(written(tmp_path, text)).depth == 40.0
+    assert read_moordyn(written(tmp_path, text)).water.depth == 40.0
 
 
 def test_a_system_that_is_written_is_read_as_it_was(tmp_path):
@@ -82,7 +83,7 @@ def test_a_system_that_is_written_is_read_as_it_was(tmp_path):
         Point(8, "coupled", (9.0, 1.0, 0.0)),
     )  # fmt: skip
     lines = (Line(5, kind, 3, 4, 13.0, 7), Line(6, other, 4, 8, 11.0, 5))
-    system = System(lines, points, 20.0, gravity=9.8, friction=0.4, slack_damping=True)
+    system = System(lines, points, Water(20.0, gravity=9.8), friction=0.4, slack_damping=True)
     path = tmp_path / "out.txt"
     write_moordyn(system, path)
     # Numbered from 1 on, as MoorDyn wants it.
@@ -145,7 +146,7 @@ BROKEN = [
     ("OPTIONS, line 18", replaced("3.0e6", "much "), "'much'"),
     ("bed_stiffness", replaced("3.0e6", "-3e6 "), "-3"),
     ("density", replaced("1025 ", "-1025"), "-1025"),
-    ("depth", replaced("40       WtrDpth", "2e5      WtrDpth"), "200000"),
+    ("water: depth", replaced("40       WtrDpth", "2e5      WtrDpth"), "200000"),
     (
         "LINE TYPES, line 5",
         replaced("(name)     (m)     (kg/m)     (N)    (N-s/-)    (N-m^2)      (-)    (-)    (-)     (-)\n", ""),
@@ -201,24 +202,34 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
 SYSTEM = chain_on_bed(4)
 POINTS, LINES = SYSTEM.points, SYSTEM.lines
 BODY = floating_body()
+TRIANGLE, PUSH = np.triu(np.ones((6, 6))), np.ones((1, 6))
 ROWS = [
-    ("lines", lambda: System((), POINTS, 40.0)),
-    ("lines: id", lambda: System((LINES[0], LINES[0]), POINTS, 40.0)),
-    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]), 40.0)),
-    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]._replace(id="3")), 40.0)),
-    ("depth", lambda: dataclasses.replace(SYSTEM, depth=math.nan)),
-    ("gravity", lambda: dataclasses.replace(SYSTEM, gravity=-1.0)),
+    ("lines", lambda: System((), POINTS, Water(40.0))),
+    ("lines: id", lambda: System((LINES[0], LINES[0]), POINTS, Water(40.0))),
+    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]), Water(40.0))),
+    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]._replace(id="3")), Water(40.0))),
+    ("water", lambda: dataclasses.replace(SYSTEM, water=40.0)),
+    ("water: depth", lambda: dataclasses.replace(SYSTEM, water=Water())),
+    ("depth", lambda: Water(math.nan)),
+    ("gravity", lambda: Water(40.0, gravity=-1.0)),
+    ("water: gravity", lambda: dataclasses.replace(SYSTEM, water=Water(40.0, gravity=1e5))),
     ("current", lambda: dataclasses.replace(SYSTEM, current=(1.0, math.inf, 0.0))),
     ("friction", lambda: dataclasses.replace(SYSTEM, friction=-0.1)),
-    ("point 1: kind", lambda: System(LINES, (POINTS[0]._replace(kind="nail"), POINTS[1]), 40.0)),
-    ("point 1: body", lambda: System(LINES, (POINTS[0]._replace(kind="body", body=7), POINTS[1]), 40.0)),
-    ("point 2: body", lambda: System(LINES, (POINTS[0], POINTS[1]._replace(body=1)), 40.0, bodies=(BODY,))),
-    ("point 5", lambda: System(LINES, (*POINTS, Point(5, "free", (0.0, 0.0, -1.0))), 40.0)),
-    ("body 1: mass", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(mass=np.zeros((6, 6))),))),
-    ("body 1: mass", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(mass=np.triu(np.ones((6, 6)))),))),
-    ("body 1: stiffness", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(stiffness=-np.eye(6)),))),
-    ("body 1: damping", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(damping=np.eye(5)),))),
-    ("body 1: excitation", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(excitation=np.ones((1, 6))),))),
+    ("point 1: kind", lambda: System(LINES, (POINTS[0]._replace(kind="nail"), POINTS[1]), Water(40.0))),
+    ("point 1: body", lambda: System(LINES, (POINTS[0]._replace(kind="body", body=7), POINTS[1]), Water(40.0))),
+    ("point 2: body", lambda: System(LINES, (POINTS[0], POINTS[1]._replace(body=1)), Water(40.0), bodies=(BODY,))),
+    ("point 5", lambda: System(LINES, (*POINTS, Point(5, "free", (0.0, 0.0, -1.0))), Water(40.0))),
+    ("body 1: mass", lambda: System(LINES, POINTS, Water(40.0), bodies=(BODY._replace(mass=np.zeros((6, 6))),))),
+    (
+        "body 1: mass",
+        lambda: System(LINES, POINTS, Water(40.0), bodies=(BODY._replace(mass=TRIANGLE),)),
+    ),
+    ("body 1: stiffness", lambda: System(LINES, POINTS, Water(40.0), bodies=(BODY._replace(stiffness=-np.eye(6)),))),
+    ("body 1: damping", lambda: System(LINES, POINTS, Water(40.0), bodies=(BODY._replace(damping=np.eye(5)),))),
+    (
+        "body 1: excitation",
+        lambda: System(LINES, POINTS, Water(40.0), bodies=(BODY._replace(excitation=PUSH),)),
+    ),
     ("system", lambda: simulate(None)),  # type: ignore[arg-type]
     ("motion", lambda: simulate(SYSTEM, motion={1: lambda t: (0.0, 0.0, 0.0)})),
     ("motion", lambda: simulate(rope(3), motion={})),  # a net has x and v instead

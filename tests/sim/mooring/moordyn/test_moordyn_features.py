@@ -92,7 +92,7 @@ def test_a_free_body_has_the_mass_of_its_row_and_the_buoyancy_of_all_its_volume(
 
 def test_depth_length_and_attachments_may_be_given_in_other_words():
     system = of_file("clump_and_float")
-    assert system.depth == 70.0
+    assert system.water.depth == 70.0
     assert system.lines[0].length == pytest.approx(1.02 * math.hypot(60.0, 5.0))
     assert [point.kind for point in system.points] == ["fixed", "free", "free", "coupled"]
 

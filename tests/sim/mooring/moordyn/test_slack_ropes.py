@@ -17,6 +17,7 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, System, simulate, write_moordyn
 from sim.mooring import read_moordyn as read
+from sim.water import Water
 from tests.sim.mooring.systems import Shaking
 
 LENGTH, PERIOD, DURATION, FRAMES = 95.0, 6.5, 45.5, 2276
@@ -27,7 +28,7 @@ with Path(__file__).with_name("moordyn_slack.csv").open(encoding="utf-8") as fil
 def rope(mass: float, anchor: float, segments: float) -> System:
     kind = LineType("rope", 0.04, mass, 1.5e6, -0.8, 1.0, 1.2, 0.0, 0.05)
     points = (Point(1, "fixed", (anchor, 0.0, -50.0)), Point(2, "coupled", (0.0, 0.0, 0.0)))
-    return System((Line(1, kind, 1, 2, LENGTH, int(segments)),), points, 50.0)
+    return System((Line(1, kind, 1, 2, LENGTH, int(segments)),), points, Water(50.0))
 
 
 def shaken(system: System, axis: float):

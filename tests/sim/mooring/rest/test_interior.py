@@ -20,6 +20,7 @@ from sim.mooring.rest.cones import (
 )
 from sim.mooring.rest.interior import InteriorState, along_central_path
 from sim.mooring.rest.statics import straight
+from sim.water import Water
 from tests.sim.mooring.systems import floating_body
 
 
@@ -97,7 +98,7 @@ def test_one_state_is_found_from_any_start(length):
         Line(2, kind, 2, 3, 0.5 * length, 8),
         Line(3, kind, 4, 3, length, 12),
     )
-    system = System(lines, points, 20.0, bodies=(floating_body(10.0),))
+    system = System(lines, points, Water(20.0), bodies=(floating_body(10.0),))
     p = system.kernel_view(1.0)
     rng, found = np.random.default_rng(5), []
     for spread in (0.0, 5.0, 500.0):

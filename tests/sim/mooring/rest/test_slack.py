@@ -12,6 +12,7 @@ from sim.mooring.rest.statics import MAX_CORRECTIONS, at_rest
 from sim.mooring.tangent import carried_coordinates, free_coordinates
 from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 from sim.validation import ConvergenceError
+from sim.water import Water
 from tests.sim.mooring.systems import floating_body
 
 ROPE = LineType("rope", 0.2, 40.0, 2e8)
@@ -20,7 +21,7 @@ WEIGHT = (40.0 - 1025.0 * math.pi / 4.0 * 0.2**2) * 9.81  # [N/m] in water
 
 def hanging(length: float, segments: int, anchor: float = -200.0) -> System:
     points = (Point(1, "fixed", (0.0, 0.0, anchor)), Point(2, "coupled", (50.0, 0.0, 0.0)))
-    return System((Line(1, ROPE, 1, 2, length, segments),), points, 200.0)
+    return System((Line(1, ROPE, 1, 2, length, segments),), points, Water(200.0))
 
 
 def links_matrix(x: np.ndarray, p: LineArrays, along: np.ndarray, across: np.ndarray) -> np.ndarray:
@@ -87,7 +88,7 @@ def test_a_line_between_high_ends_lies_on_the_bed_between_them():
 def test_a_light_line_that_floats_over_short_ends_rests(segments):
     kind = LineType("light", 0.062, 0.97 * 993.683 * math.pi / 4.0 * 0.062**2, 5.4e7, -0.95)
     points = (Point(1, "fixed", (0.0, 0.0, -60.0)), Point(2, "coupled", (10.0, 0.0, -60.0)))
-    rest = System((Line(1, kind, 1, 2, 47.34, segments),), points, 100.0).at_rest()
+    rest = System((Line(1, kind, 1, 2, 47.34, segments),), points, Water(100.0)).at_rest()
     lift = (1025.0 * kind.volume - kind.mass) * 9.81
     assert rest.x[1][:, 2].max() > -40.0
     steep = np.diff(rest.x[1][:2, 2])[0] / np.linalg.norm(np.diff(rest.x[1][:2], axis=0))
@@ -110,7 +111,7 @@ def test_a_light_line_that_floats_over_short_ends_rests(segments):
 def test_a_line_as_dense_as_water_rests_in_its_surface(diameter, fraction, stiffness, start, end, length, segments):
     kind = LineType("light", diameter, fraction * 1025.0 * math.pi / 4.0 * diameter**2, stiffness)
     points = (Point(1, "fixed", (start[0], 0.0, start[1])), Point(2, "fixed", (end[0], 0.0, end[1])))
-    rest = System((Line(1, kind, 1, 2, length, segments),), points, 100.0).at_rest()
+    rest = System((Line(1, kind, 1, 2, length, segments),), points, Water(100.0)).at_rest()
     links, weight = np.diff(rest.x[1], axis=0), 9.81 * kind.mass * length / segments
     assert (np.linalg.norm(links, axis=1) <= length / segments * (1.0 + rest.tension[1] / stiffness) + 1e-6).all()
     # Nodes under water all carry the difference of weight and lift; those above it carry the weight.
@@ -124,14 +125,14 @@ def test_a_line_as_dense_as_water_rests_in_its_surface(diameter, fraction, stiff
 def test_a_stiff_line_far_from_the_origin_rests_to_round_off():
     kind = LineType("stiff", 0.1, 1962.0 / 9.81 + 1025.0 * math.pi / 4.0 * 0.01, 64e9)
     points = (Point(1, "fixed", (0.0, 0.0, -400.0)), Point(2, "fixed", (800.0, 0.0, -300.0)))
-    rest = System((Line(1, kind, 1, 2, 1000.0, 500),), points, 1000.0, bed_stiffness=0.0).at_rest()
+    rest = System((Line(1, kind, 1, 2, 1000.0, 500),), points, Water(1000.0), bed_stiffness=0.0).at_rest()
     # 1,288.8 kN at the end itself, and the weight of half a link less in its middle (Irvine's closed form).
     assert rest.tension[1][-1] + 1962.0 * 0.5 * 1000.0 / 500 == pytest.approx(1288.8e3, rel=2e-3)
 
 
 def test_without_weight_and_tension_every_place_is_at_rest():
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (5.0, 0.0, -5.0)))
-    system = System((Line(1, ROPE, 1, 2, 20.0, 10),), points, 40.0, gravity=0.0)
+    system = System((Line(1, ROPE, 1, 2, 20.0, 10),), points, Water(40.0, gravity=0.0))
     assert np.abs(system.at_rest().tension[1]).max() < 1e-6  # round-off of a stiffness of 1e8 N/m
 
 
@@ -141,7 +142,7 @@ def test_a_small_mooring_rests_as_its_large_model_does():
     for scale in (1.0, 1e-4):
         kind = LineType("line", 0.05 * scale, 20.0 * scale**2, 1e7 * scale**3)
         points = (Point(1, "fixed", (-80.0 * scale, 0.0, -40.0 * scale)), Point(2, "fixed", (0.0, 0.0, -1.0 * scale)))
-        system = System((Line(1, kind, 1, 2, 95.0 * scale, 20),), points, 40.0 * scale, bed_stiffness=3e6)
+        system = System((Line(1, kind, 1, 2, 95.0 * scale, 20),), points, Water(40.0 * scale), bed_stiffness=3e6)
         tension.append(system.at_rest().tension[1] / scale**3)
     assert tension[1] == pytest.approx(tension[0], rel=1e-6)
 
@@ -161,7 +162,7 @@ def test_chains_solve_what_the_dense_matrix_does():
     ]  # fmt: skip
     lines = [Line(i, ROPE, i, 9, 48.0, 12) for i in range(3)]
     lines += [Line(7, ROPE, 9, 10, 5.0, 1), Line(8, ROPE, 11, 2, 50.0, 7)]
-    system = System(tuple(lines), tuple(points), 30.0, bodies=(floating_body(10.0),))
+    system = System(tuple(lines), tuple(points), Water(30.0), bodies=(floating_body(10.0),))
     p = system.kernel_view(1.0)
     x = rng.normal(size=(3, p.cols))
     along, across = rng.uniform(1.0, 2.0, len(p.links)), rng.uniform(0.1, 1.0, len(p.links))

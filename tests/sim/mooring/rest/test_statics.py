@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System
+from sim.water import Water
 from tests.sim.mooring.catenary import catenary
 from tests.sim.mooring.systems import chain_on_bed, floating_body, taut_rope
 
@@ -24,7 +25,9 @@ def system_of(case: dict[str, float], segments: int) -> System:
     depth = case["rise"] if case["on_bed"] else 2.0 * case["length"]
     points = (Point(1, "fixed", (0.0, 0.0, low)), Point(2, "fixed", (case["span"], 0.0, low + case["rise"])))
     # The bed presses by area: of so thin a line it must be the stiffer to leave the line at its height.
-    return System((Line(1, kind, 1, 2, case["length"], segments),), points, depth, bed_stiffness=case["weight"] * 1e10)
+    return System(
+        (Line(1, kind, 1, 2, case["length"], segments),), points, Water(depth), bed_stiffness=case["weight"] * 1e10
+    )
 
 
 def test_the_catenary_is_that_of_moorpy():
@@ -78,7 +81,7 @@ def test_three_lines_meet_at_a_free_point_in_balance():
     kind = LineType("rope", 0.05, 10.0, 1e7)
     points = [Point(i, "fixed", (40 * math.cos(2 * i), 40 * math.sin(2 * i), -30.0)) for i in range(3)]
     points.append(Point(9, "free", (0.0, 0.0, -5.0), mass=50.0, volume=3.0))
-    system = System(tuple(Line(i, kind, i, 9, 48.0, 12) for i in range(3)), tuple(points), 30.0)
+    system = System(tuple(Line(i, kind, i, 9, 48.0, 12) for i in range(3)), tuple(points), Water(30.0))
     rest = system.at_rest()
     pull = np.zeros(3)
     for i in range(3):
@@ -99,7 +102,7 @@ def test_a_body_at_rest_balances_its_lines():
     fairleads = tuple(Point(10 + i, "body", (2 * c, 2 * s, -1.0), body=1) for i, (c, s) in enumerate(ends))
     body = floating_body()
     lines = tuple(Line(i, kind, i, 10 + i, 64.0, 16) for i in range(3))
-    rest = System(lines, anchors + fairleads, 20.0, bodies=(body,)).at_rest()
+    rest = System(lines, anchors + fairleads, Water(20.0), bodies=(body,)).at_rest()
     force = -np.asarray(body.stiffness) @ rest.bodies[1]
     for i, fairlead in enumerate(fairleads):
         step = rest.x[i][-2] - rest.x[i][-1]
@@ -113,6 +116,6 @@ def test_a_body_at_rest_balances_its_lines():
 def test_a_line_that_floats_hangs_upside_down():
     kind = LineType("float", 0.3, 20.0, 1e8)
     points = (Point(1, "fixed", (0.0, 0.0, -80.0)), Point(2, "fixed", (60.0, 0.0, -80.0)))
-    rest = System((Line(1, kind, 1, 2, 70.0, 30),), points, 80.0).at_rest()
+    rest = System((Line(1, kind, 1, 2, 70.0, 30),), points, Water(80.0)).at_rest()
     found = catenary(70.0, 1e8, (DENSITY * math.pi / 4 * 0.09 - 20.0) * GRAVITY, 60.0, 0.0, on_bed=False)
     assert rest.x[1][15, 2] + 80.0 == pytest.approx(-found.shape(np.array([35.0]))[1][0], rel=2e-3)

@@ -23,7 +23,7 @@ HAIR = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
 
 def float_on_chain(segments: int = 40) -> System:
     points = (Point(1, "fixed", (0.0, 0.0, -200.0)), Point(2, "free", (5.0, 0.0, -150.0), mass=1000.0, volume=20.0))
-    return System((Line(1, CHAIN, 1, 2, 400.0, segments),), points, 200.0)
+    return System((Line(1, CHAIN, 1, 2, 400.0, segments),), points, Water(200.0))
 
 
 def test_a_float_on_a_slack_line_rests_at_the_surface():
@@ -40,7 +40,7 @@ def test_a_float_on_a_slack_line_rests_at_the_surface():
 def test_a_line_that_floats_lies_on_the_water_as_deep_as_it_is_heavy():
     kind = LineType("float", 0.2, 20.0, 1e8)
     points = (Point(1, "fixed", (0.0, 0.0, -30.0)), Point(2, "fixed", (10.0, 0.0, 0.0)))
-    rest = System((Line(1, kind, 1, 2, 80.0, 40),), points, 30.0).at_rest()
+    rest = System((Line(1, kind, 1, 2, 80.0, 40),), points, Water(30.0)).at_rest()
     level = (0.5 - 20.0 / (1025.0 * kind.volume)) * math.pi / 4.0 * 0.2
     afloat = rest.x[1][:, 2] > -0.2
     assert afloat.sum() > 15
@@ -50,7 +50,7 @@ def test_a_line_that_floats_lies_on_the_water_as_deep_as_it_is_heavy():
 def one_float(z: float, waves: Waves | None = None) -> tuple[System, np.ndarray]:
     """A float of 0.6 m3 and 300 kg on a hair, at a height z [m]."""
     points = [Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "free", (0.0, 0.0, z), 300.0, 0.6, 0.8, 0.5)]
-    system = System([Line(1, HAIR, 1, 2, 200.0, 1)], points, 50.0, bed_stiffness=0.0, waves=waves)
+    system = System([Line(1, HAIR, 1, 2, 200.0, 1)], points, Water(50.0), bed_stiffness=0.0, waves=waves)
     return system, np.array([0.0, 0.0, 0.0, 0.0, -50.0, z])
 
 
@@ -104,7 +104,7 @@ def test_a_float_rides_on_long_waves():
     one = np.ones(1)
     waves = Waves(k * one, 0.0 * one, amplitude * one, 0.0 * one, omega * one, Water(5000.0))
     system, x = one_float(0.0)
-    system = dataclasses.replace(system, depth=5000.0, waves=waves)
+    system = dataclasses.replace(system, water=waves.water, waves=waves)
     state = State.still(x.reshape(3, 2))
     advance(system, state, "leapfrog", 5e-3, 6000)
     height = state.x[2, 1] - amplitude * math.cos(k * state.x[0, 1] - omega * state.t)
@@ -143,7 +143,7 @@ HEAVY = LineType("chain", 0.18, 40.0, 5e7)
 def hung_from(top: float, segments: int) -> System:
     """A line of 230 m above an anchor 100 m deep, with its fairlead 200 m away and at a height [m]."""
     points = (Point(1, "fixed", (0.0, 0.0, -100.0)), Point(2, "coupled", (200.0, 0.0, top)))
-    return System((Line(1, HEAVY, 1, 2, 230.0, segments),), points, 100.0, bed_stiffness=0.0)
+    return System((Line(1, HEAVY, 1, 2, 230.0, segments),), points, Water(100.0), bed_stiffness=0.0)
 
 
 @pytest.mark.parametrize("top", [0.0, -0.02, -1.0])
@@ -178,7 +178,7 @@ def test_energy_of_a_line_through_the_surface_is_conserved(top):
     """Its fairlead moves through the surface, and its water puts in what it is given there."""
     kind = LineType("rope", 0.2, 20.0, 1e5, damping=0.0, drag_across=0.0, drag_along=0.0)
     points = (Point(1, "fixed", (0.0, 0.0, -20.0)), Point(2, "coupled", (12.0, 0.0, top)))
-    system = System((Line(1, kind, 1, 2, 26.0, 6),), points, 20.0, bed_stiffness=0.0)
+    system = System((Line(1, kind, 1, 2, 26.0, 6),), points, Water(20.0), bed_stiffness=0.0)
     motion = {2: Shaking((12.0, 0.0, top), 2, 1.5, 4.0)}
     run = simulate(system, 6.0, 13, 2e-4, motion=motion, with_account=True)
     assert np.ptp(run.energy.work) > 50.0

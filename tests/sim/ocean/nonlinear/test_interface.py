@@ -12,6 +12,7 @@ from sim.floating.motion.float_in import float_in
 from sim.ocean import Sea
 from sim.ocean.any_sea import SurfaceAt
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
+from sim.water import Water
 
 LINEAR: dict[str, Any] = {
     "size": 32, "length": 160.0, "spectrum": "sea_state", "hs": 1.0, "tp": 6.0, "choppiness": 0.0,
@@ -179,7 +180,8 @@ def test_side_bands_grow_at_the_rate_of_benjamin_and_feir() -> None:
         ({"amplitude": -1.0}, "amplitude: -1.0"),
         ({"count": 0}, "count: 0"),
         ({"length": 0.0}, "length: 0.0"),
-        ({"gravity": 0.0}, "gravity: 0.0"),
+        ({"water": Water(gravity=0.0)}, "water: gravity: 0.0"),
+        ({"water": Water(30.0)}, "water: depth: 30.0"),
     ],
 )
 def test_refusals(arguments: dict[str, Any], message: str) -> None:

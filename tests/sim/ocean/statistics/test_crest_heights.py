@@ -36,14 +36,14 @@ def test_the_highest_of_n_is_exceeded_once() -> None:
 @pytest.mark.parametrize("is_long_crested", [False, True])
 def test_low_waves_have_the_crests_of_rayleigh(is_long_crested: bool) -> None:
     """P = exp(-8 (crest/Hs)^2), in the limit of no steepness on deep water."""
-    crest = forristall_crest(8.0, 1e-6, 10.0, 0.04, math.inf, 9.81, is_long_crested=is_long_crested)
+    crest = forristall_crest(8.0, 1e-6, 10.0, 0.04, is_long_crested=is_long_crested)
     assert crest == pytest.approx(1e-6, rel=2e-4)
 
 
 def test_a_steep_sea_by_hand() -> None:
     """Hs 10 m, T1 10 s, deep: S1 = 0.06405; exceeded by one crest in 1000."""
     alpha, beta = 0.3536 + 0.2568 * 0.064048, 2.0 - 1.7912 * 0.064048
-    crest = forristall_crest(math.log(1000.0), 10.0, 10.0, 0.0402, math.inf, 9.81, is_long_crested=False)
+    crest = forristall_crest(math.log(1000.0), 10.0, 10.0, 0.0402, is_long_crested=False)
     assert crest == pytest.approx(10.0 * alpha * math.log(1000.0) ** (1.0 / beta), rel=1e-5)
     assert crest == pytest.approx(10.3, abs=0.1)  # 9.3 m of linear waves
 

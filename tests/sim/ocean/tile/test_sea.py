@@ -13,6 +13,7 @@ from sim.ocean.dispersion import viscous_root
 from sim.ocean.fluids.medium import Medium
 from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics.statistics import expected as expected_of
+from sim.validation import ApproximationWarning
 from tests.naive_ocean import grid_fields, sum_of_waves
 
 FIELDS = ("height", "displacement", "slope", "jacobian")
@@ -465,9 +466,9 @@ def test_a_regular_wave_on_a_tile_is_its_nearest_wave_as_high_as_given():
 def test_a_regular_wave_that_a_tile_cannot_hold_is_the_nearest_that_it_can_and_warned_of(direction):
     """Waves of 126 m on a tile of 20 m, and of 1.56 m, which cells of 0.82 m are too large for: as high as given."""
     given = {"wave_height": 1.0, "wind_speed": 0.0, "wind_direction": direction, "precision": "double"}
-    with pytest.warns(UserWarning, match=r"a wave of 126 m is longer than the tile of 20 m"):
+    with pytest.warns(ApproximationWarning, match=r"a wave of 126 m is longer than the tile of 20 m"):
         long = Sea(64, 20.0, "regular", wave_period=9.0, **given)
-    with pytest.warns(UserWarning, match=r"a wave of 1\.56 m is too short for the grid of 54 m and 64 cells"):
+    with pytest.warns(ApproximationWarning, match=r"a wave of 1\.56 m is too short for the grid of 54 m and 64 cells"):
         short = Sea(64, 54.0, "regular", wave_period=1.0, **(given | {"wind_direction": 0.0}))
     for sea, length in ((long, 20.0), (short, 54.0 / 31)):
         assert sea.significant_height == pytest.approx(math.sqrt(2.0))

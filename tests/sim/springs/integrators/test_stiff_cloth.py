@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from sim.springs.cloth import pleated_cloth, vertical_cloth
 from sim.springs.integrators.implicit import dissection, quasi_newton
 from sim.springs.integrators.implicit import steps as implicit
 from sim.springs.state import State, advance
+from sim.validation import ApproximationWarning
 
 SIX = ([0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2])  # of a symmetric block
 
@@ -186,7 +188,8 @@ def test_a_cloth_that_falls_freely_is_solved_in_two_corrections():
 def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles():
     """Though its steps do not settle: what they leave would feed the motion, but is mended."""
     net = dataclasses.replace(pleats(12, 1e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
-    run = simulate(net, 0.5, 31, 1 / 60, "implicit_midpoint", with_account=True)
+    with pytest.warns(ApproximationWarning, match="implicit_midpoint had not settled"):
+        run = simulate(net, 0.5, 31, 1 / 60, "implicit_midpoint", with_account=True)
     total = run.energy.total + run.energy.dissipated
     assert run.unsettled > 0
     assert run.energy.dissipated[-1] > 10.0
@@ -202,5 +205,11 @@ def test_steps_that_were_taken_unsettled_are_counted_however_they_are_shared_out
     advance(net, loose, "leapfrog", 1e-5, 20)
     assert 0 < one.unsettled == many.unsettled <= 20
     assert loose.unsettled == 0
-    run = simulate(net, 20 / 64, 2, 1 / 64, "implicit_euler")
+    with pytest.warns(
+        ApproximationWarning, match=f"implicit_euler had not settled in {one.unsettled} steps of 0.015625 s"
+    ):
+        run = simulate(net, 20 / 64, 2, 1 / 64, "implicit_euler")
     assert run.unsettled == one.unsettled
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ApproximationWarning)
+        assert simulate(net, 20e-5, 2, 1e-5, "leapfrog").unsettled == 0

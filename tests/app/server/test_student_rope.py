@@ -21,7 +21,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)
-    monkeypatch.setattr(Viewer, "audience", lambda self: 1)
+    monkeypatch.setattr(Viewer, "visitors", lambda self: [1])
     folder = tmp_path / "mine"
     with student_lab(folder, time_limit=1.0) as (viewer, session):
         wait_for(lambda: taken(session) == 1)  # what the new folder holds; to restart with it is no start of a run

@@ -14,7 +14,6 @@ from sim.springs.forces.matrices import FRICTION, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.points.arrays import mass_at
 from sim.springs.points.each_contact import each_contact, slip
-from sim.springs.points.each_link import TINY
 
 stopping = kernel(inline=True)(point_laws.stopping)
 
@@ -75,7 +74,9 @@ def foresee(touch, x, v, t, p):
     ru, rv, rw = slip(v, n, touch)
     vn = ru * nx + rv * ny + rw * nz
     tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-    over = -grip(touch.depth, vn, p.inverse_masses[touch.j], p) / math.sqrt(tx * tx + ty * ty + tz * tz + TINY)
+    most, speed = grip(touch.depth, vn, p.inverse_masses[touch.j], p), math.sqrt(tx * tx + ty * ty + tz * tz)
+    # A point that friction could stop in the kick may be at rest, where the direction of its motion is round-off.
+    over = -most / speed if p.stop_rate * speed > 0.5 * most else 0.0
     set_at(p.held, touch.j + (3 * n if touch.on_sphere else 0), n, over * tx, over * ty, over * tz)
 
 

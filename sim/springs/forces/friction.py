@@ -10,13 +10,11 @@ import math
 
 from sim import point_laws
 from sim.jit import kernel
-from sim.springs.forces.contact import surface_velocity, touches
 from sim.springs.forces.matrices import FRICTION, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.points.arrays import mass_at
-from sim.springs.points.each_link import TINY
+from sim.springs.points.each_contact import each_contact, slip
 
-touching = kernel(inline=True)(point_laws.touching)
 stopping = kernel(inline=True)(point_laws.stopping)
 
 # The accelerations that friction holds against: those of the state at hand; the same, noted for later; those noted.
@@ -36,159 +34,111 @@ def grip(depth, vn, w, p):
     return p.friction * max(0.0, p.contact_k * depth - p.contact_b * vn) * w
 
 
+@each_contact(noalias=True)
+def hold_against_others(touch, x, v, t, p, a):
+    w, n = p.inverse_masses[touch.j], p.rows * p.cols
+    i, o = touch.j, touch.j + (3 * n if touch.on_sphere else 0)
+    if w == 0.0:
+        set_at(p.held, o, n, 0.0, 0.0, 0.0)
+        return
+    ax, ay, az = a[i], a[n + i], a[2 * n + i]
+    if p.load_is[0] == NOTED:
+        set_at(p.load, o, n, ax, ay, az)
+    elif p.load_is[0] == FIXED:
+        ax, ay, az = p.load[o], p.load[o + n], p.load[o + 2 * n]
+    nx, ny, nz = touch.nx, touch.ny, touch.nz
+    ru, rv, rw = slip(v, n, touch)
+    most = grip(touch.depth, ru * nx + rv * ny + rw * nz, w, p)
+    sx, sy, sz, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
+    a[i] -= part * sx
+    a[n + i] -= part * sy
+    a[2 * n + i] -= part * sz
+    set_at(p.held, o, n, -part * sx, -part * sy, -part * sz)
+
+
 @kernel(noalias=True, allocates=False)
 def accelerate(x, v, t, p, with_damping, f, a):
     if not with_damping:
         return
-    n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere, o = surface == 1, 3 * n * surface
-        if not touches(x, t, p, on_sphere):
-            if p.load_is[0] == NOTED:
-                p.load[o : o + 3 * n] = 0.0
-            continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        for j in range(n):
-            w = p.inverse_masses[j]
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth <= 0.0 or w == 0.0:
-                set_at(p.held, o + j, n, 0.0, 0.0, 0.0)
-                if p.load_is[0] == NOTED:
-                    set_at(p.load, o + j, n, 0.0, 0.0, 0.0)
-                continue
-            ax, ay, az = a[j], a[n + j], a[2 * n + j]
-            if p.load_is[0] == NOTED:
-                set_at(p.load, o + j, n, ax, ay, az)
-            elif p.load_is[0] == FIXED:
-                ax, ay, az = p.load[o + j], p.load[o + n + j], p.load[o + 2 * n + j]
-            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-            most = grip(depth, ru * nx + rv * ny + rw * nz, w, p)
-            sx, sy, sz, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
-            a[j] -= part * sx
-            a[n + j] -= part * sy
-            a[2 * n + j] -= part * sz
-            set_at(p.held, o + j, n, -part * sx, -part * sy, -part * sz)
+    if p.load_is[0] == NOTED:
+        for i in range(p.load.shape[0]):
+            p.load[i] = 0.0
+    hold_against_others(x, v, t, p, a)
 
 
-@kernel(allocates=False)
-def foresee(x, v, t, p):
+@each_contact()
+def foresee(touch, x, v, t, p):
     """Set p.held to the friction of points that slide at v, before a kick that `hold` ends."""
     n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere, o = surface == 1, 3 * n * surface
-        if not touches(x, t, p, on_sphere):
-            continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        for j in range(n):
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-            vn = ru * nx + rv * ny + rw * nz
-            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-            over = -grip(depth, vn, p.inverse_masses[j], p) / math.sqrt(tx * tx + ty * ty + tz * tz + TINY)
-            set_at(p.held, o + j, n, over * tx, over * ty, over * tz)
+    nx, ny, nz = touch.nx, touch.ny, touch.nz
+    ru, rv, rw = slip(v, n, touch)
+    vn = ru * nx + rv * ny + rw * nz
+    tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+    most, speed = grip(touch.depth, vn, p.inverse_masses[touch.j], p), math.sqrt(tx * tx + ty * ty + tz * tz)
+    # A point that friction could stop in the kick may be at rest, where the direction of its motion is round-off.
+    over = -most / speed if p.stop_rate * speed > 0.5 * most else 0.0
+    set_at(p.held, touch.j + (3 * n if touch.on_sphere else 0), n, over * tx, over * ty, over * tz)
 
 
-@kernel(allocates=False)
-def hold_on(x, v, t, s, p, on_sphere, foreseen):
+@each_contact("sum")
+def hold(touch, x, v, t, s, p, foreseen):
     """Friction for a time s, last in a kick, which stops points that it can stop. Returns the sphere's work [J].
 
     foreseen: of other points, the friction that `foresee` has set, for a kick that mirrors one without.
     """
-    work = 0.0
-    if not touches(x, t, p, on_sphere):
-        return work
+    j, n, w = touch.j, p.rows * p.cols, p.inverse_masses[touch.j]
+    if w == 0.0:
+        return 0.0
+    o = j + (3 * n if touch.on_sphere else 0)
+    nx, ny, nz = touch.nx, touch.ny, touch.nz
+    ru, rv, rw = slip(v, n, touch)
+    vn = ru * nx + rv * ny + rw * nz
+    tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+    slow, speed = grip(touch.depth, vn, w, p) * s, math.sqrt(tx * tx + ty * ty + tz * tz)
+    fx, fy, fz = s * p.held[o], s * p.held[o + n], s * p.held[o + 2 * n]
+    if speed <= slow:
+        fx, fy, fz = -tx, -ty, -tz
+    elif not foreseen or (fx == 0.0 and fy == 0.0 and fz == 0.0):
+        fx, fy, fz = -slow / speed * tx, -slow / speed * ty, -slow / speed * tz
+    v[j] += fx
+    v[n + j] += fy
+    v[2 * n + j] += fz
+    return (fx * touch.su + fy * touch.sv + fz * touch.sw) / w
+
+
+@each_contact("two sums")
+def power_of_held(touch, x, v, t, p):
+    """(dissipated, put in by a moving sphere) [W] by the accelerations that `accelerate` has last written to p.held."""
     n = p.rows * p.cols
-    o = 3 * n if on_sphere else 0
-    su, sv, sw = surface_velocity(p, on_sphere)
-    moves = su != 0.0 or sv != 0.0 or sw != 0.0
-    for j in range(n):
-        w = p.inverse_masses[j]
-        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-        if depth <= 0.0 or w == 0.0:
-            continue
-        ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-        vn = ru * nx + rv * ny + rw * nz
-        tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-        slow, speed = grip(depth, vn, w, p) * s, math.sqrt(tx * tx + ty * ty + tz * tz)
-        fx, fy, fz = s * p.held[o + j], s * p.held[o + n + j], s * p.held[o + 2 * n + j]
-        if speed <= slow:
-            fx, fy, fz = -tx, -ty, -tz
-        elif not foreseen or (fx == 0.0 and fy == 0.0 and fz == 0.0):
-            fx, fy, fz = -slow / speed * tx, -slow / speed * ty, -slow / speed * tz
-        v[j] += fx
-        v[n + j] += fy
-        v[2 * n + j] += fz
-        if moves:
-            work += (fx * su + fy * sv + fz * sw) / w
-    return work
-
-
-@kernel(inline=True)
-def hold(x, v, t, s, p, foreseen):
-    """The floor's and the sphere's, each with its surface as a constant, which LLVM makes use of."""
-    work = 0.0
-    if p.has_floor:
-        work += hold_on(x, v, t, s, p, False, foreseen)
-    if p.has_sphere:
-        work += hold_on(x, v, t, s, p, True, foreseen)
-    return work
+    m, o = mass_at(p, touch.j), touch.j + (3 * n if touch.on_sphere else 0)
+    u, q, r = slip(v, n, touch)
+    fx, fy, fz = m * p.held[o], m * p.held[o + n], m * p.held[o + 2 * n]
+    return -(fx * u + fy * q + fz * r), fx * touch.su + fy * touch.sv + fz * touch.sw
 
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
-    """(dissipated, put in by a moving sphere) [W] by the accelerations that `accelerate` has last written to p.held."""
-    dissipated = work = 0.0
-    if not with_damping:
-        return dissipated, work
-    n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere = surface == 1
-        if not touches(x, t, p, on_sphere):
-            continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        o = 3 * n * surface
-        for j in range(n):
-            m = mass_at(p, j)
-            fx, fy, fz = m * p.held[o + j], m * p.held[o + n + j], m * p.held[o + 2 * n + j]
-            dissipated -= fx * (v[j] - su) + fy * (v[n + j] - sv) + fz * (v[2 * n + j] - sw)
-            work += fx * su + fy * sv + fz * sw
-    return dissipated, work
+    return power_of_held(x, v, t, p) if with_damping else (0.0, 0.0)
 
 
-@kernel(noalias=True, allocates=False)
-def tangent(x, u, t, p, part, longest, out):
+@each_contact(noalias=True)
+def tangent(touch, x, u, t, p, part, longest, out):
     """M across the normals of the touching points, as part FRICTION."""
-    if part != FRICTION:
-        return
-    n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere = surface == 1
-        if not touches(x, t, p, on_sphere):
-            continue
-        for j in range(n):
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth > 0.0:
-                add_product(out, u, j, n, 0.0, mass_at(p, j), nx, ny, nz)
+    if part == FRICTION:
+        add_product(out, u, touch.j, p.rows * p.cols, 0.0, mass_at(p, touch.j), touch.nx, touch.ny, touch.nz)
 
 
-@kernel(allocates=False)
-def blocks(x, v, t, g, p, points):
+@each_contact()
+def blocks(touch, x, v, t, g, p, points):
     """The secant of the force over the sliding speed, of each touching point, as against noted accelerations."""
     n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere, o = surface == 1, 3 * n * surface
-        if not touches(x, t, p, on_sphere):
-            continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        for j in range(n):
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth <= 0.0:
-                continue
-            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-            most = grip(depth, ru * nx + rv * ny + rw * nz, p.inverse_masses[j], p)
-            ax, ay, az = p.load[o + j], p.load[o + n + j], p.load[o + 2 * n + j]
-            _, _, _, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
-            add_block(points, j, n, 0.0, g * mass_at(p, j) * p.stop_rate * part, nx, ny, nz)
+    o = touch.j + (3 * n if touch.on_sphere else 0)
+    nx, ny, nz = touch.nx, touch.ny, touch.nz
+    ru, rv, rw = slip(v, n, touch)
+    most = grip(touch.depth, ru * nx + rv * ny + rw * nz, p.inverse_masses[touch.j], p)
+    ax, ay, az = p.load[o], p.load[o + n], p.load[o + 2 * n]
+    _, _, _, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
+    add_block(points, touch.j, n, 0.0, g * mass_at(p, touch.j) * p.stop_rate * part, nx, ny, nz)
 
 
 FORCE = Force(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, close_damping, kinetic_energy, open_damping
 from sim.springs.damping import damp_beside, damp_lines, damp_motion, damp_others, foresee_all, hold_all, other_acts
-from sim.springs.forces.contact import kick_touching, touches
+from sim.springs.forces.contact import kick_touching
 from sim.springs.kicks.chain import factor_chain, make_chain, solve_chain
 from sim.springs.kicks.dampers import (
     MOST_CHANGES,
@@ -32,6 +32,7 @@ from sim.springs.kicks.formula import shares
 from sim.springs.kicks.lines import kick_lines, kick_lines_with_account, make_lines_system
 from sim.springs.kicks.sheet import make_sheet, solve_sheet
 from sim.springs.points.arrays import by_net, mass_at
+from sim.springs.points.each_contact import touches
 from sim.springs.points.each_link import each_link
 from sim.springs.points.order import in_turn
 from sim.springs.points.vector_ops import add_scaled, set_sum

@@ -16,10 +16,11 @@ from sim.springs.points.order import in_turn
 
 TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
 
-# Of the loop over the links: its lines before, within and after, by what becomes of the values of `visit`.
+# Of a loop over links or contacts: its lines before, within and after, by what becomes of the values of `visit`.
 LOOPS = {
     "nothing": ("pass", "{call}", "return None"),
     "sum": ("total = 0.0", "total += {call}", "return total"),
+    "two sums": ("first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second"),
     "largest": ("largest = 0.0", "largest = max(largest, {call})", "return largest"),
 }
 

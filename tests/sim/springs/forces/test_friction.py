@@ -141,3 +141,26 @@ def test_the_capstan_s_error_falls_with_the_square_of_the_spacing():
     coarse, fine = (capstan_ratio(0.5, math.pi, links) / math.exp(0.5 * math.pi) - 1.0 for links in (12, 24))
     assert 0.01 < coarse < 0.05
     assert abs(fine) < 0.4 * coarse
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_friction_of_a_point_that_is_torn_loose_acts_against_its_motion(seed):
+    """It rests on a moving sphere at the start of a step, where its slip is round-off, and is pulled loose within."""
+    rng = np.random.default_rng(seed)
+    normal, along = np.linalg.qr(rng.standard_normal((3, 2)))[0].T
+    velocity, push, h = rng.uniform(-1.0, 1.0, 3), 10.0, 1e-3
+    x = np.zeros((3, 1, 2))
+    x[:, 0, 1] = (1.3 - push / SURFACE.stiffness) * normal
+    x[:, 0, 0] = x[:, 0, 1] + along
+    # The root moves with the sphere, and after a step further by what stretches the link to 30 N.
+    path = PinPath(0.0, (tuple(x[:, 0, 0]), tuple(velocity), (0.0,) * 3, tuple(30.0 / 500.0 / h**3 * along)))
+    net = dataclasses.replace(
+        rope(2, 1.0, 1.0, 500.0, damping=0.0, drag=0.0, contact=SURFACE), gravity=tuple(-push * normal),
+        x0=x, sphere=(0.0, 0.0, 0.0, 1.3), sphere_velocity=tuple(velocity), pin_paths=(((0, 0), path),),
+    )  # fmt: skip
+    state = State.at_rest(net)
+    state.v[:, 0, 1] = velocity
+    advance(net, state, INTEGRATORS["leapfrog"], h, 1)
+    slide = state.v[:, 0, 1] - velocity
+    assert slide @ along == pytest.approx(0.5 * h * (30.0 - SURFACE.friction * push), rel=1e-3)
+    assert np.linalg.norm(slide - (slide @ along) * along) < 1e-3 * (slide @ along)

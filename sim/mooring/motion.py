@@ -4,6 +4,7 @@
 `point_forces` are the forces at them.
 """
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -23,7 +24,7 @@ from sim.springs.points.acceleration import set_node_forces
 from sim.springs.simulate import SIMULATED, Simulated
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, check_state, velocities
-from sim.validation import argument_error, check_positive, check_vector
+from sim.validation import ApproximationWarning, argument_error, check_positive, check_vector
 
 SAFETY = 0.5  # of the critical step at the start
 PIECE = 0.05  # [s] of a moved point's path in one cubic
@@ -149,6 +150,7 @@ class MooringFrames:
         """t (frames,) [s]: since the start; step: [s] the longest allowed."""
         self.system, self.motion, self.record, self.with_account = system, motion, record, with_account
         self.t, self.evals, self.state, interval = start.t + t, start.force_evals, start.copy(), float(t[1])
+        self.unsettled = start.unsettled
         self.place_moved()
         self.pieces, self.piece = equal_steps(interval, PIECE if motion else interval)  # [s] of paths
         self.steps, self.h = equal_steps(self.piece, step)
@@ -223,6 +225,7 @@ class MooringFrames:
             self.h,
             self.record.name,
             self.state,
+            self.state.unsettled - self.unsettled,
         )
 
 
@@ -246,8 +249,15 @@ def run_mooring(
     if start is None:
         placed = {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()}
         start = State.still(at_rest(system, placed).nodes)
-    h = step or SAFETY * critical_step(system, record, start)
+    longest = critical_step(system, record, start)
+    h = step or SAFETY * longest
     check_steps(float(t[-1]), h, MOST_STEPS, step is not None)
+    if h > longest:
+        text = (
+            f"step: {h:g} s is above the critical step of {record.name} at the start, {longest:g} s: drag and slack "
+            "lines may bound a motion that grows, and its tensions are wrong then"
+        )
+        warnings.warn(text, ApproximationWarning, stacklevel=3)
     kept = MooringFrames(system, motion, record, t, h, start, with_account)
     done = run_frames(kept, len(t), progress)
     return kept.run(None if done == len(t) else float(kept.t[done]))

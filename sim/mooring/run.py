@@ -30,3 +30,4 @@ class MooringRun(NamedTuple):
     step: float  # [s] that was taken
     integrator: str
     state: State  # at the end: `simulate` continues from it
+    unsettled: int  # kicks of lines whose drag or slack links had not settled

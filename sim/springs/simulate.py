@@ -117,6 +117,12 @@ def simulate(
         system, t, step, how.integrator if integrator is None else integrator, with_account, progress, **given
     )
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
+    if run.unsettled > 0:
+        text = (
+            f"the solver of {run.integrator} had not settled in {run.unsettled} steps of {run.step:g} s: their "
+            "error is that of the solver"
+        )
+        warnings.warn(text, ApproximationWarning, stacklevel=2)
     return run
 
 
@@ -165,18 +171,11 @@ def run_net(
         h = step or default_step(net, record)
         check_steps(duration, h, MOST_STEPS, step is not None)
         run = stepped(net, state, record, t, h, with_account, progress)
-    approximations = []
     if run.left_out > 0:
-        approximations.append(
+        text = (
             f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
             "particle were within reach"
         )
-    if run.unsettled > 0:
-        approximations.append(
-            f"the solver of {record.name} had not settled in {run.unsettled} steps of {run.step:g} s: their "
-            "error is that of the solver"
-        )
-    for text in approximations:
         warnings.warn(text, ApproximationWarning, stacklevel=3)
     return run
 

@@ -234,7 +234,7 @@ def kick_inside_lines(x, v, a, t, s, closing, room, p, with_account, ledger):
     if with_account:
         kick_lines_with_account(x, v, a, t, s, p, not closing, room.system, room.before, ledger)
     else:
-        kick_lines(x, v, a, t, s, p, not closing, room.system)
+        kick_lines(x, v, a, t, s, p, not closing, room.system, ledger)
 
 
 kick_inside = by_net(rope=kick_inside_net, grid=kick_inside_net, lines=kick_inside_lines)

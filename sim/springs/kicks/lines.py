@@ -340,7 +340,7 @@ def open_stage(x, t, offset, p, room):
 
 @kernel(noalias=True, allocates=False)
 def take_stage(v, a, tau, p, room, rounds):
-    """Set v to S(room.w), in at least a number of rounds."""
+    """Set v to S(room.w), in at least a number of rounds. Returns 0, or 1 if drag and links have not settled then."""
     y = room.w
     add_scaled(y, tau, a)
     for turn in range(MAX_ROUNDS):
@@ -365,7 +365,8 @@ def take_stage(v, a, tau, p, room, rounds):
                 pull_ends(p, room, q, tau * room.y[k])
         set_pushed(v, y, p, room)
         if is_settled(v, p, tau, room) and turn + 1 >= rounds:
-            break
+            return 0
+    return 1
 
 
 @kernel(allocates=False)
@@ -382,11 +383,11 @@ def holders_work(v, s, p, room):
 
 
 @kernel(noalias=True, allocates=False)
-def kick_lines(x, v, a, t, s, p, begins, room):
+def kick_lines(x, v, a, t, s, p, begins, room, ledger):
     """Kick for a time s [s] at the positions x of time t [s], by the accelerations a (3 n,) without damping.
 
     begins: the kick begins at t, else it ends there. p.inertia is that of `accelerate` at x. Returns the work [J] that
-    prescribed nodes did through the damping of links.
+    prescribed nodes did through the damping of links. A kick whose drag or links have not settled counts in ledger[2].
     """
     # The first stage begins with the drag at the velocities before it: a second round makes it of second order. The
     # second stage begins with the drag at velocities extrapolated from the first.
@@ -394,7 +395,7 @@ def kick_lines(x, v, a, t, s, p, begins, room):
     for j in range(v.shape[0]):
         room.start[j] = room.turning[j] = room.w[j] = v[j]
     open_stage(x, t, begin + GAMMA * s, p, room)
-    take_stage(v, a, GAMMA * s, p, room, rounds)
+    unsettled = take_stage(v, a, GAMMA * s, p, room, rounds)
     work = holders_work(v, (1.0 - GAMMA) * s, p, room)
     for j in range(v.shape[0]):
         gained = v[j] - room.start[j]
@@ -403,7 +404,8 @@ def kick_lines(x, v, a, t, s, p, begins, room):
         room.turning[j] = v[j] if begins else room.start[j]
     set_drag(v, p, room)
     open_stage(x, t, begin + s, p, room)
-    take_stage(v, a, GAMMA * s, p, room, 1)
+    unsettled += take_stage(v, a, GAMMA * s, p, room, 1)
+    ledger[2] += min(unsettled, 1)
     return work + holders_work(v, GAMMA * s, p, room)
 
 
@@ -414,7 +416,7 @@ def kick_lines_with_account(x, v, a, t, s, p, begins, room, before, ledger):
     before: scratch (3 n,).
     """
     kinetic = open_damping(v, p, before)
-    put_in = kick_lines(x, v, a, t, s, p, begins, room)
+    put_in = kick_lines(x, v, a, t, s, p, begins, room, ledger)
     lost = kinetic - kinetic_energy(v, p)
     # a M u = 1/4 (K(u + a) - K(u - a)) of the quadratic K = u M u; `kinetic_energy` is half of it.
     for j in range(v.shape[0]):

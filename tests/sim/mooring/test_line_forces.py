@@ -63,7 +63,7 @@ def damped(p, x, v, s) -> np.ndarray:
     """The velocities after damping alone for a time s [s]."""
     found = v.copy()
     set_inverse_masses(x, p)
-    kick_lines(x, found, np.zeros_like(v), 0.0, s, p, True, make_lines_system(p))
+    kick_lines(x, found, np.zeros_like(v), 0.0, s, p, True, make_lines_system(p), np.zeros(3))
     return found
 
 
@@ -171,7 +171,9 @@ def test_moved_ends_work_against_the_damping_of_their_links():
     p.paths[:, 1, 1] = (-0.2, 0.3)
     expected, s = 50.0 / 1.5 * (0.6 * 0.2 - 0.1 * 0.3), 1e-6
     set_inverse_masses(x, p)
-    assert kick_lines(x, v, np.zeros(9), 0.0, s, p, True, make_lines_system(p)) / s == pytest.approx(expected, rel=1e-3)
+    assert kick_lines(x, v, np.zeros(9), 0.0, s, p, True, make_lines_system(p), np.zeros(3)) / s == pytest.approx(
+        expected, rel=1e-3
+    )
 
 
 def test_the_pull_of_a_line_turns_a_body_about_its_reference_point():

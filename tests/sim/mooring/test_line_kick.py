@@ -246,12 +246,12 @@ def test_the_kick_of_branched_lines_and_bodies_is_the_dense_exponential(strong):
     room, errors = make_lines_system(p), []
     for s in (0.2 / fastest, 0.1 / fastest):
         v = begin.copy()
-        kick_lines(x, v, np.zeros(3 * n), 0.0, s, p, True, room)
+        kick_lines(x, v, np.zeros(3 * n), 0.0, s, p, True, room, np.zeros(3))
         errors.append(np.abs(v[free] - expm(s * matrix) @ begin[free]).max() / small)
     assert errors[0] < 2e-3
     assert errors[1] < 0.15 * errors[0]
     v = begin.copy()
-    kick_lines(x, v, np.zeros(3 * n), 0.0, 1e3 / fastest, p, True, room)
+    kick_lines(x, v, np.zeros(3 * n), 0.0, 1e3 / fastest, p, True, room, np.zeros(3))
     slow = expm(1e3 / fastest * matrix) @ begin[free]
     assert np.abs(v[free] - slow).max() < 0.2 * np.abs(begin).max()
 

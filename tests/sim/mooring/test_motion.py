@@ -27,6 +27,7 @@ from sim.springs.integrators import integrator_named
 from sim.springs.kicks.lines import kick_lines, make_lines_system
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.points.line_points import set_inverse_masses
+from sim.validation import ApproximationWarning
 from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
@@ -64,7 +65,7 @@ def damped_alone(p, x, v, s) -> np.ndarray:
     """The velocities after damping alone for a time s [s]."""
     found = v.copy()
     set_inverse_masses(x, p)
-    kick_lines(x, found, np.zeros_like(found), 0.0, s, p, True, make_lines_system(p))
+    kick_lines(x, found, np.zeros_like(found), 0.0, s, p, True, make_lines_system(p), np.zeros(3))
     return found
 
 
@@ -281,6 +282,30 @@ def test_a_run_that_diverges_ends_with_a_warning_and_what_it_has():
     assert "critical_step" in str(caught[-1].message)
     assert np.isfinite(run.x[1][0]).all()
     assert np.isnan(run.x[1][-1]).all()
+
+
+def test_a_step_above_the_critical_one_and_kicks_that_have_not_settled_are_said():
+    """A light rope that is thrown about, in steps as long as its drag bears: its slack links never settle."""
+    kind = LineType("rope", 1.7e-3, 0.15, 3e7, 4.2e4)
+    points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (10.0, 0.0, -5.0)))
+    system = System((Line(1, kind, 1, 2, 13.0, 25),), points, Water(30.0))
+    calm = State.still(system.at_rest().nodes)
+    longest, wild = critical_step(system, "leapfrog", calm), calm.copy()
+    wild.v[:, 2:] = np.random.default_rng(1).standard_normal(wild.v[:, 2:].shape)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")  # it diverges, too
+        thrown = simulate(system, duration=0.5, frames=2, step=0.0025, start=wild)
+    assert thrown.unsettled > 0
+    texts = [str(one.message) for one in caught if one.category is ApproximationWarning]
+    assert any(text.startswith("step: 0.0025 s is above the critical step of leapfrog") for text in texts)
+    assert any(f"had not settled in {thrown.unsettled} steps" in text for text in texts)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ApproximationWarning)
+        still = simulate(system, duration=0.01, frames=2, step=0.99 * longest, start=calm)
+    assert still.unsettled == 0
+    counted = wild.copy()
+    advance(system, counted, integrator_named("leapfrog"), 0.0025, 200)
+    assert counted.unsettled == thrown.unsettled
 
 
 @pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])

@@ -92,7 +92,7 @@ def test_a_deck_that_is_written_is_the_same_here_and_in_moordyn(base, tmp_path):
     write_moordyn(before, tmp_path / "after.txt")
     after = read_moordyn(tmp_path / "after.txt")
     assert [line._replace(id=0) for line in after.lines] == [line._replace(id=0) for line in before.lines]
-    assert (after.points, after.depth) == (before.points, before.depth)
+    assert (after.points, after.water) == (before.points, before.water)
     pytest.importorskip("moordyn")
     end = "---------------------- need this line"
     text = (tmp_path / "after.txt").read_text("utf-8").replace(end, f"0.0005 dtM\n0.5 TmaxIC\n{end}")

@@ -40,7 +40,7 @@ def with_hull(params: Any, path: Path, reading: Any) -> Any:
     return dataclasses.replace(params, hull=str(path), **how)
 
 
-def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -> Any:
+def with_spectrum(params: Any, path: Path, time: str, missing: str, has_length: bool) -> Any:
     """The parameters with the waves of a measured spectrum, and a tile that holds them unless a length was given.
 
     Raises ValueError for a scene without a sea, or a file that holds no spectrum.
@@ -49,11 +49,11 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
 
     if not hasattr(params, "spectrum_file"):
         raise argument_error("--spectrum", str(path), "a spectrum with the scenes square_sea and radial_sea only")
-    from app.scenes.sea_parameters import spectrum_in_file, tile_length
+    from app.scenes.sea_parameters import measured_spectrum, tile_length
 
+    params = dataclasses.replace(params, spectrum_file=str(path), spectrum_time=time, spectrum_missing=missing)
     with naming_extra("spectra", path):
-        spectrum = spectrum_in_file(str(path), time or "")
-    params = dataclasses.replace(params, spectrum_file=str(path), spectrum_time=time or "")
+        spectrum = measured_spectrum(params)
     if has_length or not hasattr(params, "length"):
         return params
     return dataclasses.replace(params, length=tile_length(spectrum, params))

@@ -65,7 +65,12 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mooring", type=Path, metavar="FILE", help="open a MoorDyn file in the scene mooring")
     spectrum = "waves of a measured spectrum, in either sea: CSV, NDBC, WAVEWATCH III or SWAN; see docs/files.md"
     parser.add_argument("--spectrum", type=Path, metavar="FILE", help=spectrum)
-    parser.add_argument("--spectrum-time", metavar="TIME", help="time of the record to use (default: the last one)")
+    when = "time of the record to use (default: the last one)"
+    parser.add_argument("--spectrum-time", metavar="TIME", default="", help=when)
+    missing = (
+        'numbers that stand for a missing value in the file, such as 99,999, or "none" (default: the format\'s rule)'
+    )
+    parser.add_argument("--spectrum-missing", metavar="NUMBERS", default="", help=missing)
 
 
 def add_mesh_reading(parser: argparse.ArgumentParser) -> None:
@@ -107,7 +112,8 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
     if arguments.mooring is not None:
         params = with_mooring(params, arguments.mooring, setup)
     if arguments.spectrum is not None:
-        params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
+        time, missing = arguments.spectrum_time, arguments.spectrum_missing
+        params = with_spectrum(params, arguments.spectrum, time, missing, "length" in setup.values)
     say_without_effect(setup._replace(params=params))
     file = arguments.mooring or arguments.spectrum
     if file is not None:
@@ -119,7 +125,7 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
 def check_files_named(arguments: argparse.Namespace) -> None:
     """Raises ValueError for an option about a file that no other option names."""
     for option, needed in (("hull_unit", "hull"), ("weld", "hull"), ("mirror", "hull"), ("cap", "hull"),
-                           ("spectrum_time", "spectrum")):  # fmt: skip
+                           ("spectrum_time", "spectrum"), ("spectrum_missing", "spectrum")):  # fmt: skip
         if getattr(arguments, option) and getattr(arguments, needed) is None:
             raise ValueError(f"--{option.replace('_', '-')}: it needs --{needed} FILE")
 

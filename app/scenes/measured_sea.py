@@ -5,22 +5,28 @@ from typing import Any
 
 from app.formats.formatting import number
 from app.render.markup.html import Html, bold, fill, join
-from app.scenes.sea_parameters import notes_on_file, spectrum_in_file
+from app.scenes.sea_parameters import measured_spectrum, notes_on_file
+from sim.ocean.spectra import Spectrum
 
 
 @functools.lru_cache(maxsize=8)
-def height_and_period(path: str, time: str) -> tuple[float, float]:
-    """Hs [m] and Tp [s] of the measured spectrum in a file."""
-    found = spectrum_in_file(path, time).moments()
+def moments_of(spectrum: Spectrum[Any]) -> Any:
+    """Its moments, which a page needs again and again."""
+    return spectrum.moments()
+
+
+def height_and_period(params: Any) -> tuple[float, float]:
+    """Hs [m] and Tp [s] of the measured spectrum of a sea."""
+    found = moments_of(measured_spectrum(params))
     return found.significant_height, found.peak_period
 
 
 def measured_text(params: Any) -> Html:
     """Name, height and period of the measured spectrum of a sea."""
-    height, period = height_and_period(params.spectrum_file, params.spectrum_time)
+    height, period = height_and_period(params)
     return fill(
         "<div>Measured, {}: significant height {} m, peak period {} s.</div>",
-        spectrum_in_file(params.spectrum_file, params.spectrum_time).title, number(height), number(period),
+        measured_spectrum(params).title, number(height), number(period),
     )  # fmt: skip
 
 
@@ -28,5 +34,5 @@ def files_folder(params: Any) -> dict[str, str]:
     """Heading -> HTML of the folder on the file of a measured spectrum; none without one."""
     if not params.spectrum_file:
         return {}
-    title = fill("<div>{}</div>", bold(spectrum_in_file(params.spectrum_file, params.spectrum_time).title))
+    title = fill("<div>{}</div>", bold(measured_spectrum(params).title))
     return {"Files": join((title, *(fill("<div>{}</div>", note) for note in notes_on_file(params))))}

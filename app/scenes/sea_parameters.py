@@ -8,6 +8,7 @@ from typing import Any
 from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Spectrum
 from sim.parameters import Parameter, parameters_of
+from sim.validation import argument_error
 
 SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
@@ -33,19 +34,39 @@ def spectrum_values(params: object) -> dict[str, Any]:
     return {name: math.radians(v) if PARAMETERS[name].unit == "rad" else v for name, v in values.items()}
 
 
+def missing_values(text: str) -> tuple[float, ...] | None:
+    """The numbers that stand for a missing value in a file, by `--spectrum-missing`; None by the file's own rule.
+
+    text: numbers and commas, "none", or "" for the file's rule. Raises ValueError.
+    """
+    if not text:
+        return None
+    try:
+        return () if text == "none" else tuple(map(float, text.split(",")))
+    except ValueError:
+        allowed = 'numbers and commas, such as 99,999, or "none"'
+        raise argument_error("--spectrum-missing", text, allowed) from None
+
+
 @functools.lru_cache(maxsize=8)
-def spectrum_in_file(path: str, time: str) -> Spectrum[Any]:
-    """The measured spectrum in a file, read once; time: of its record, "" for the last. Raises as `read_spectrum`."""
+def spectrum_in_file(path: str, time: str, missing: str) -> Spectrum[Any]:
+    """The measured spectrum in a file, read once. Raises as `read_spectrum`.
+
+    time: of its record, "" for the last. missing: see `missing_values`.
+    """
     from sim.ocean import read_spectrum  # a start without a file does without the formats of files
 
-    return read_spectrum(path, time or None)
+    return read_spectrum(path, time or None, missing=missing_values(missing))
+
+
+def measured_spectrum(params: Any) -> Spectrum[Any]:
+    """The spectrum of a sea's file."""
+    return spectrum_in_file(params.spectrum_file, params.spectrum_time, params.spectrum_missing)
 
 
 def chosen_spectrum(params: Any) -> Spectrum[Any]:
     """The spectrum of a sea's parameters: that of a file, if there is one."""
-    if params.spectrum_file:
-        return spectrum_in_file(params.spectrum_file, params.spectrum_time)
-    return SPECTRA[params.spectrum]
+    return measured_spectrum(params) if params.spectrum_file else SPECTRA[params.spectrum]
 
 
 def notes_on_file(params: Any) -> tuple[str, ...]:

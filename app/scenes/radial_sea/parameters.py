@@ -183,6 +183,7 @@ class RadialSeaParams:
     hull_cap: str = ""
     spectrum_file: str = ""  # a measured spectrum
     spectrum_time: str = ""  # of its record, "" for the last one
+    spectrum_missing: str = ""  # numbers for a missing value in it, "none", or "" for its own rule
 
 
 PRESETS: dict[str, dict[str, Any]] = {

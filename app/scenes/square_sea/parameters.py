@@ -157,6 +157,7 @@ class SquareSeaParams:
 
     spectrum_file: str = ""  # a measured spectrum; named on the command line only, never by a browser
     spectrum_time: str = ""  # of its record, "" for the last one
+    spectrum_missing: str = ""  # numbers for a missing value in it, "none", or "" for its own rule
 
 
 PRESETS: dict[str, dict[str, Any]] = {

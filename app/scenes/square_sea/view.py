@@ -286,7 +286,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
             return fill("{}<br>{}", text, report.highest_text(highest))
         if not p.spectrum_file or not theory.whole > 0.0:
             return text
-        height, period = height_and_period(p.spectrum_file, p.spectrum_time)
+        height, period = height_and_period(p)
         held = percent(theory.statistics.significant_height / theory.whole, 3)
         return fill("{}. File: {} m, {} s; the tile holds {}.", text, number(height), number(period), held)
 

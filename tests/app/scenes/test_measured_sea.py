@@ -14,6 +14,7 @@ from app.commands.options import read_params
 from app.scenes import scene_named
 from app.scenes.radial_sea.report import readout_of
 from app.scenes.radial_sea.view import RadialSeaView
+from app.scenes.sea_parameters import measured_spectrum
 from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import SquareSeaView
 from app.server.loop.sim_loop import SimLoop
@@ -84,6 +85,7 @@ def test_the_sum_of_waves_has_the_height_of_the_file(table):
         (["--scene", "rope"], "square_sea and radial_sea only"),
         (["--scene", "square_sea", "--spectrum-time", "noon"], "such as 2020-01-02 05:00"),
         (["--scene", "square_sea", "--spectrum-time", "2020-01-02"], "table of one"),
+        (["--scene", "square_sea", "--spectrum-missing", "99;x"], 'such as 99,999, or "none"'),
     ],
 )
 def test_a_spectrum_that_does_not_fit_ends_with_one_line(table, words, said, monkeypatch, capsys):
@@ -105,7 +107,12 @@ def test_a_file_alone_opens_its_scene(table, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("words", "file"),
-    [(["--spectrum-time", "2020-01-01"], "spectrum"), (["--weld", "1e-5"], "hull"), (["--hull-unit", "mm"], "hull")],
+    [
+        (["--spectrum-time", "2020-01-01"], "spectrum"),
+        (["--spectrum-missing", "99"], "spectrum"),
+        (["--weld", "1e-5"], "hull"),
+        (["--hull-unit", "mm"], "hull"),
+    ],
 )
 def test_an_option_about_a_file_needs_the_file(words, file, monkeypatch, capsys):
     monkeypatch.setattr("app.commands.serve.serve_lab", lambda *_, **__: pytest.fail("the server was started"))
@@ -113,6 +120,17 @@ def test_an_option_about_a_file_needs_the_file(words, file, monkeypatch, capsys)
     assert f"it needs --{file} FILE" in capsys.readouterr().err
     assert main(["run", "radial_sea", "--seconds", "1", "--out", "x.npz", *words]) == 2
     assert f"it needs --{file} FILE" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("missing", "share"), [("", 1.0), ("none", 1.0), ("7", 1.0 - 1.0 / 3.0), ("7,8", 1.0 / 3.0)])
+def test_numbers_that_stand_for_a_missing_value_are_an_option(tmp_path, missing, share):
+    """Three bands of nearly equal energy, of which two have a density that may mean "missing"."""
+    path = tmp_path / "three.csv"
+    path.write_text("f,S\n0.05,0\n0.1,7\n0.15,0\n0.2,7.5\n0.25,0\n0.3,8\n0.35,0\n", encoding="utf-8")
+    options = ["--spectrum-missing", missing] if missing else []
+    _, scene, _ = snapshot_of("square_sea", "--spectrum", str(path), *options, "--set", "size=64", "mesh=32")
+    energy = measured_spectrum(scene.params).moments().significant_height ** 2 / 16.0
+    assert energy == pytest.approx(0.05 * 22.5 * share, rel=0.05)
 
 
 @pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])

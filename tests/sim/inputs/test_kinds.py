@@ -111,7 +111,7 @@ READERS = {  # reader -> kinds that it takes, and its call
     "springtide hydrodynamics": ((), lambda path: hydrodynamics.make(path, None)),
     "read_spectrum": (("table of a spectrum", "spectrum of a buoy", "spectrum of SWAN"), read_spectrum),
     "--spectrum": (("table of a spectrum", "spectrum of a buoy", "spectrum of SWAN"),
-                   lambda path: with_spectrum(SEA.params(), path, None, False)),
+                   lambda path: with_spectrum(SEA.params(), path, "", "", False)),
     "read_record": (("record",), read_record),
     "with_dataset": (("dataset",), lambda path: with_dataset(Hull.box(60.0, 16.0, 6.0), path)),
     "--preset": (("set-up", "recording", "replay"), lambda path: read_setup_text("--preset", path)),

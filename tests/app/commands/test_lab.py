@@ -271,7 +271,7 @@ def test_the_report_shows_laws_what_was_done_and_pictures_beside_their_task(fini
     assert text.count("viewed in the panel") == 1
     row = section[section.index("<th") :]
     assert row.index("Predicted") < row.index("Measured") < row.index("It swings for ever.") < row.index("0.1125 m")
-    assert "at 12 random inputs. Behaviour: No force at rest" in section
+    assert "Matches the reference at all inputs of the check. Behaviour: No force at rest" in section
     assert "spring_force rope 1.00 s.png" in section
     assert "my cat.png" not in section
     assert text.index("More pictures") < text.index("my cat.png")

@@ -192,7 +192,7 @@ class Tree:
 def place(new: ast.AST, old: ast.AST) -> None:
     """Give new nodes the line of the one that they replace."""
     for node in ast.walk(new):
-        if "lineno" in node._attributes and not hasattr(node, "lineno"):
+        if not hasattr(node, "lineno"):
             ast.copy_location(node, old)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Spectrum
 from sim.parameters import Parameter, parameters_of
+from sim.quantities import read_number
 from sim.validation import argument_error
 
 SPECTRUM_TITLES = {
@@ -42,7 +43,7 @@ def missing_values(text: str) -> tuple[float, ...] | None:
     if not text:
         return None
     try:
-        return () if text == "none" else tuple(map(float, text.split(",")))
+        return () if text == "none" else tuple(map(read_number, text.split(",")))
     except ValueError:
         allowed = 'numbers and commas, such as 99,999, or "none"'
         raise argument_error("--spectrum-missing", text, allowed) from None

@@ -210,7 +210,7 @@ class LineScene(abc.ABC):
             good = self.state.copy()
             paths = self.paths(h * count)
             advance(self.system, self.state, method, h, count, driven={"paths": paths, **self.driven()})
-            if not self.start.is_near(self.state.x, self.rows):
+            if not self.start.is_bounded(self.state.x, self.rows):
                 self.state = good
                 raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
             self.measure()

@@ -39,7 +39,7 @@ class MooringStart(NamedTuple):
         largest_strain = MAX_STRAIN + max(rows.largest_strain(rest.nodes), 0.0)
         return cls(scale, rows.stretch(rest.nodes), fault, failure, farthest, largest_strain)
 
-    def is_near(self, x: NDArray[np.float64], rows: LineRows) -> bool:
+    def is_bounded(self, x: NDArray[np.float64], rows: LineRows) -> bool:
         """False for a state x (3, nodes) [m] that is not finite, or beyond the reach or strain of any line."""
         return bool(np.abs(x).max() < self.farthest) and rows.largest_strain(x) < self.largest_strain
 

@@ -86,6 +86,7 @@ def test_the_sum_of_waves_has_the_height_of_the_file(table):
         (["--scene", "square_sea", "--spectrum-time", "noon"], "such as 2020-01-02 05:00"),
         (["--scene", "square_sea", "--spectrum-time", "2020-01-02"], "table of one"),
         (["--scene", "square_sea", "--spectrum-missing", "99;x"], 'such as 99,999, or "none"'),
+        (["--scene", "square_sea", "--spectrum-missing", "nan"], 'such as 99,999, or "none"'),
     ],
 )
 def test_a_spectrum_that_does_not_fit_ends_with_one_line(table, words, said, monkeypatch, capsys):

@@ -9,7 +9,7 @@ from typing import Any
 
 
 def conditions_of(function: Callable[..., Any]) -> list[str]:
-    """The comparisons of a function, with the formulas of its own names in place of them."""
+    """The comparisons of a function, each name that it assigns replaced by its formula."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
     formulas: dict[str, list[ast.expr]] = {}
     for node in ast.walk(tree):

@@ -34,6 +34,7 @@ from app.lab.report.classroom import Classroom, Desk, Student
 from app.lab.report.rope_picture import RopePicture, rope_picture, svg
 from app.lab.student.saved import Saved, read_files, store
 from app.lab.student.versions import Versions, stamps
+from tests.app.lab.check.test_true_sentences import CALLERS, source_of
 from tests.waiting import wait_for
 
 ODD = "<b>" if os.name == "posix" else "b&b"  # a folder's name; Windows has no angle brackets in names
@@ -47,17 +48,6 @@ def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
     return stiffness * (length - rest_length) * r / length {} damping * (v1 - v2)
 """
 ROPE = next(task for task in TASKS if task.name == "rope_acceleration")
-CALLER = """
-    F = -drag * v
-    for i in range(len(x) - 1):
-        f = spring_force(x[i], x[i + 1], v[i], v[i + 1], stiffness, damping, rest_length)
-        F[i] += f
-        F[i + 1] -= f
-    a = F / mass
-    a[:, 2] -= gravity
-    a[0] = 0
-    return a
-"""
 EVIL = "<img src=x onerror=alert(1)>"
 
 
@@ -157,7 +147,7 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(fold
 def test_a_right_function_that_calls_a_wrong_one_waits_and_is_no_mistake(folders: list[Path], state_of) -> None:
     save(folders[0], "+")
     with (folders[0] / "rope.py").open("a", encoding="utf-8") as file:
-        file.write(f"\n\ndef rope_acceleration({', '.join(ROPE.arguments)}):{CALLER}")
+        file.write("\n\n" + source_of(ROPE, CALLERS[ROPE.name]))
     results = {result.task.name: result for result in state_of(folders[0]).results}
     assert (results["spring_force"].state, results["rope_acceleration"].state) == ("wrong", "waits")
     assert [mistake.place for mistake in mistakes([("ada", tuple(results.values()))])] == ["3.2-1 spring_force"]

@@ -38,6 +38,7 @@ from app.panel.workbook.code_panel import (
 )
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene, rows_of
+from tests.app.lab.check.test_true_sentences import CALLERS, source_of
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
@@ -439,19 +440,9 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     wait_for(lambda: right.versions.verdicts.get("spring_force") == Verdict("right"))
 
 
-CALLER = """
-
-def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):
-    F = -drag * v
-    for i in range(len(x) - 1):
-        f = spring_force(x[i], x[i + 1], v[i], v[i + 1], stiffness, damping, rest_length)
-        F[i] += f
-        F[i + 1] -= f
-    a = F / mass
-    a[:, 2] -= gravity
-    a[0] = 0
-    return a
-"""
+CALLER = "\n\n" + source_of(
+    next(task for task in TASKS if task.name == "rope_acceleration"), CALLERS["rope_acceleration"]
+)
 
 
 def test_in_the_panel_a_right_function_waits_for_the_wrong_one_that_it_calls(right: Session) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.floating.linear.hydrodynamics import DIRECTIONS, afloat
+from sim.floating.linear.hydrodynamics import DIRECTIONS, YAW, afloat
 from sim.floating.motion.body import Body, Fleet
 from sim.floating.motion.rotation import axes_of, four, heading_angle, heading_of
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers
@@ -43,8 +43,9 @@ class WaveExcitation:
         self.is_round = np.array([kind.is_round for kind in self.kinds], dtype=bool)
         planes = [np.vstack([kind.plane.rise, kind.plane.slope]) for kind in self.kinds]
         self.planes = np.array(planes).reshape(len(self.kinds), 3, 6)
-        longs = [np.vstack([kind.long.rise, kind.long.lift, kind.long.run]) for kind in self.kinds]
-        self.longs = np.array(longs).reshape(len(self.kinds), 4, 6)
+        forces = [kind.long for kind in self.kinds]
+        longs = [np.vstack([one.rise, one.lift, one.run, one.twist * YAW]) for one in forces]
+        self.longs = np.array(longs).reshape(len(self.kinds), 5, 6)
         self.kx = self.ky = np.zeros(0)
         self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the responses were taken
         self.omega = np.zeros(0)
@@ -130,7 +131,7 @@ def set_responses(
     """Set responses (n, 12, waves) of `sums_at` of the bodies that have turned: gravity D, and i gravity D/w upward.
 
     inverse (waves,) [s]: 1/w, 0 for waves that creep. tables (kinds, waves, 36, 6) without the long-wave force where
-    is_long (kinds, waves), longs (kinds, 4, 6): that force, averaged (kinds, waves), planes (kinds, 3, 6).
+    is_long (kinds, waves), longs (kinds, 5, 6): that force, averaged (kinds, waves), planes (kinds, 3, 6).
     """
     count = tables.shape[2]
     spacing = 2.0 * math.pi / count
@@ -159,7 +160,7 @@ def set_responses(
                 X += a2 * tables[q, i, j2, d] + a3 * tables[q, i, j3, d]
                 if is_long[q, i]:
                     X += longs[q, 0, d] + k * longs[q, 1, d]
-                    X += 1j * (along * longs[q, 2, d] + across * longs[q, 3, d])
+                    X += 1j * (along * longs[q, 2, d] + across * longs[q, 3, d]) + along * across * longs[q, 4, d]
                 plane = planes[q, 0, d] + 1j * (along * planes[q, 1, d] + across * planes[q, 2, d])
                 D[d] = X - averaged[q, i] * plane
             for d in range(2):

@@ -47,9 +47,10 @@ PIECE = 64  # waves at a time: the solve yields in between
 BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
 LONG_NODES = 3  # frequencies of a table, up to which the force of long waves is taken off before interpolation
 LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is left is divided there
-# Of k, by which the rest at the first frequency fades below it; except for yaw faster than by its law, since it is
-# small, and wrong where a hull has the coefficients of a box.
-FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
+# Of k, by which the rest at the first frequency fades below it: faster than by its law, since it is small, and wrong
+# where a hull has the coefficients of a box
+FADING_POWER = 3.0
+YAW = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -70,20 +71,22 @@ class PlaneForce(NamedTuple):
 
 
 class LongWaveForce(NamedTuple):
-    """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull, to first order of k.
+    """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull, to the first order of k for each.
 
-    X = rise + w^2/g lift + i (kx run[0] + ky run[1]), at unit density and gravity; w^2/g is k in deep water.
+    X = rise + w^2/g lift + i (kx run[0] + ky run[1]), at unit density and gravity; w^2/g is k in deep water. The twist
+    of the surface adds the yaw moment kx ky twist, which for a hull of two equal sides is the first.
     """
 
     rise: np.ndarray
     lift: np.ndarray  # [for each rad/m]
     run: np.ndarray  # (2, 6) the same
+    twist: float  # [m5]
 
     def at(self, kx: np.ndarray, ky: np.ndarray, depth: float) -> np.ndarray:
         """X (..., 6) of wavenumbers kx, ky (...) [rad/m] in water of a depth [m]."""
         kx, ky = kx[..., None], ky[..., None]
         upward = omega(np.hypot(kx, ky), 1.0, depth) ** 2
-        return self.rise + upward * self.lift + 1j * (kx * self.run[0] + ky * self.run[1])
+        return self.rise + upward * self.lift + 1j * (kx * self.run[0] + ky * self.run[1]) + kx * ky * self.twist * YAW
 
 
 class LinearHull(NamedTuple):
@@ -149,13 +152,13 @@ class LinearHull(NamedTuple):
         cosine, sine = np.cos(self.directions), np.sin(self.directions)
         beyond = self.excitation - self.long.at(nodes[:, None] * cosine, nodes[:, None] * sine, self.depth)
         scaled = (beyond / nodes[:, None, None] ** LONG_POWERS).reshape(len(nodes), -1)
-        powers, fading = (np.tile(one, len(DIRECTIONS)) for one in (LONG_POWERS, FADING_POWERS))
+        powers = np.tile(LONG_POWERS, len(DIRECTIONS))
         index, weights = lagrange(self.frequency, np.minimum(omega(k, 1.0, self.depth), self.frequency[-1]))
         table, found = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
         for piece in pieces(len(k), PIECE):
             for i, one in enumerate(k[piece].tolist(), start=piece.start):
                 if one < nodes[0]:
-                    found[i] = (one / nodes[0]) ** fading * beyond[0].ravel()
+                    found[i] = (one / nodes[0]) ** FADING_POWER * beyond[0].ravel()
                 elif is_long[i]:
                     found[i] = one**powers * (weights[i] @ scaled[index[i]])
                 else:
@@ -387,34 +390,44 @@ def table_hull(hull: Hull, draft: float) -> LinearHull:
     frequency = table.frequency / root
     # the wave reaches the axis of the table and the centre of mass one after the other
     directions = DIRECTIONS if math.isnan(table.heading) else np.full(len(DIRECTIONS), table.heading)
-    path = hull.axis[0] * np.cos(directions) + hull.axis[1] * np.sin(directions)
+    unit_vectors = np.column_stack([np.cos(directions), np.sin(directions)])
+    path = unit_vectors @ np.array(hull.axis)
     water = table.depth * length
     excitation = excitation * np.exp(1j * wavenumber(frequency, 1.0, water)[:, None] * path)[:, :, None]
+    excitation = (excitation * unit * length) @ S
     added, plane, cut = S.T @ (a * scale) @ S, plane_force(hull, draft), upright(hull, draft)
+    twist = yaw_by_twist(excitation[0, :, 5], float(wavenumber(frequency[:1], 1.0, water)[0]) * unit_vectors)
     return LinearHull(
         frequency=frequency,
         added_mass=added,
         damping=S.T @ (b * scale / root) @ S,
         infinite=S.T @ (infinite * scale) @ S,
-        excitation=(excitation * unit * length) @ S,
+        excitation=excitation,
         length=length,
         draft=draft,
         volume=cut.volume,
         is_round=is_round,
         plane=plane,
-        long=long_wave_force(plane, cut, added[0]),
+        long=long_wave_force(plane, cut, added[0], twist),
         depth=water,
         heading=table.heading,
     )
 
 
-def long_wave_force(plane: PlaneForce, cut: Submerged, added: np.ndarray) -> LongWaveForce:
+def yaw_by_twist(moment: np.ndarray, k: np.ndarray) -> float:
+    """The factor of kx ky in the yaw moment (n,) of waves of k (n, 2) [rad/m]; 0 where no wave turns the hull."""
+    product = k[:, 0] * k[:, 1]
+    square = float(product @ product)
+    return float(product @ moment.real) / square if square > 0.0 else 0.0
+
+
+def long_wave_force(plane: PlaneForce, cut: Submerged, added: np.ndarray, twist: float) -> LongWaveForce:
     """The force of long waves on a hull of added mass (6, 6), and the part of it that is wet at rest.
 
     The mass displaced, times the acceleration of the water, is in the force of the plane except for its vertical part.
     """
     weight = cut.volume * np.array([0.0, 0.0, 1.0, cut.centre[1], -cut.centre[0], 0.0])
-    return LongWaveForce(plane.rise, -added[:, 2] - weight, plane.slope - added[:, :2].T)
+    return LongWaveForce(plane.rise, -added[:, 2] - weight, plane.slope - added[:, :2].T, twist)
 
 
 def velocity_at(x: float, y: float, z: float) -> np.ndarray:
@@ -584,8 +597,10 @@ def coefficients_afloat(hull: Hull, density: float, layers: Layers) -> Afloat:
         inertia = cut.volume / hull.volume * float(hull.inertia[axis, axis])
         own[3 + axis] = natural_frequency(linear, 3 + axis, inertia, stiffness)
     memory = memory_of(linear, own)
-    # with the added mass that `step` has, or a long wave would not carry the body as far as the water
-    linear = linear._replace(long=long_wave_force(linear.plane, cut, linear.infinite + memory.slow_added_mass()))
+    # with the added mass that `step` has, or a long wave would not move the body as far as the water moves
+    slow, solid = linear.infinite + memory.slow_added_mass(), cut.volume / hull.volume * float(hull.inertia[2, 2])
+    twist = linear.long.twist * (solid + slow[5, 5]) / (solid + linear.added_mass[0, 5, 5])
+    linear = linear._replace(long=long_wave_force(linear.plane, cut, slow, float(twist)))
     area = wet_area(hull, min(draft, float(hull.size[2])))
     return Afloat(linear, memory, area, approximation_of(hull, draft))
 

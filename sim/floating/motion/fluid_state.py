@@ -32,6 +32,7 @@ class FluidState(NamedTuple):
     relief: np.ndarray  # (0,), or per vertex of each body in turn [m]: surface above its body's plane
     interface_relief: np.ndarray  # (0,) or the same of the interface [m]
     excitation: np.ndarray  # (0, 6), or (n, 6) [m3, m4 times m/s2]: wave force beyond the pressure of the plane
+    yaw: np.ndarray  # (n,) [m4 times m/s2] moment of waves about the vertical axis, where no excitation is given
     lead: float  # [s] from the beginning of the step to the time of all these values
 
 
@@ -49,6 +50,7 @@ def make_water(
     relief: np.ndarray | None = None,
     interface_relief: np.ndarray | None = None,
     excitation: np.ndarray | None = None,
+    yaw: np.ndarray | None = None,
     lead: float = 0.0,
 ) -> FluidState:
     """The water around a fleet from its values at the bodies' positions, of the shapes and units of `FluidState`.
@@ -59,7 +61,8 @@ def make_water(
     (frequency of the wave over that of heave)^2. excitation: from `WaveExcitation`, where the surface is a sum of
     waves: what diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the
     plane. Without it that is the mass displaced and the added mass times the fluid's acceleration, as in waves long
-    beside the hull. lead [s]: how long after the beginning of the step the values hold; half of the step is best.
+    beside the hull, and the moment `yaw` of their twist. lead [s]: how long after the beginning of the step the values
+    hold; half of the step is best.
     Raises ValueError for bad layers or shapes; values are checked by `step`.
     """
     check_fleet(fleet)
@@ -99,6 +102,7 @@ def make_water(
         relief=field("relief", relief, bumps, 0.0),
         interface_relief=field("interface_relief", interface_relief, interface_bumps, 0.0),
         excitation=field("excitation", excitation, (0, 6) if excitation is None else (n, 6), 0.0),
+        yaw=field("yaw", yaw, (n,), 0.0),
         lead=check_number("lead", lead, "s"),
     )
 

@@ -8,9 +8,10 @@ F_p are the exact integrals of the hydrostatic pressure over the wet hull (hydro
 `FluidState`: in any wave, upwards, the weight of what is displaced. A (6, 6) is the added mass at infinite frequency,
 F_r the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e the wave force beyond F_p
 (excitation.py). If the sea is no sum of waves, F_e is the added mass plus the mass displaced at rest, times the
-fluid's acceleration at the surface, and F_r follows from the velocity against the fluid: so a small hull that
-displaces its weight moves with the fluid in long waves. Small motions are those of linear theory. The drag is along
-and about the body's own axes, rho S/2 (b v + C |v| v/2) with S the wetted area.
+fluid's acceleration at the surface, with the yaw moment of the surface's twist, and F_r follows from the velocity
+against the fluid: so a small hull that displaces its weight moves with the fluid in long waves. Small motions are
+those of linear theory. The drag is along and about the body's own axes, rho S/2 (b v + C |v| v/2) with S the wetted
+area.
 
 **Means.** A, F_r and F_e are linear and have no mean. Second-order terms must not leave a spurious mean force. Three
 would: A dV/dt in axes that lean with the body (A differs along them, and lean and acceleration are correlated), an
@@ -461,6 +462,7 @@ def set_forces(fleet, water, coefficients, i, density, pose, scratch):
             load[c] = scratch.mass[c, 0] * ax + scratch.mass[c, 1] * ay + scratch.mass[c, 2] * az
         set_six(load, plus(linear_part(load), -m, (ax, ay, az)), angular_part(load))
         load[2] += carried * a
+        load[5] += density * scratch.felt[5] * water.yaw[i]
     load[0] -= carried * a * sx
     load[1] -= carried * a * sy
     waves, g = load[2], coefficients.gravity

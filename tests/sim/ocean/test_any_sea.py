@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in
+from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in, response_amplitude
+from sim.floating.motion.rotation import heading_angle
 from sim.ocean import RadialSea, Sea
 from sim.ocean.any_sea import AnySea
 from sim.ocean.nonlinear import NonlinearSea
@@ -161,8 +162,10 @@ def with_choppiness(sea: AnySea, choppiness: float) -> AnySea:
     *(("linear march", depth, 0.0) for depth in (math.inf, 8.0, 4.0)),
     ("sum", math.inf, 0.0),
 ])  # fmt: skip
-def test_a_small_body_without_drag_surges_and_sways_as_the_water(kind: str, depth: float, choppiness: float) -> None:
-    """By coth(kh) in a long wave of 12 s, along both axes."""
+def test_a_small_body_without_drag_surges_and_sways_as_the_water_and_yaws(
+    kind: str, depth: float, choppiness: float
+) -> None:
+    """By coth(kh) in a long wave of 12 s, along both axes; the yaw is that of the frequency domain, within 1 %."""
     omega = 2.0 * math.pi / 12.0
     k = float(Water(depth).wavenumber(np.array(omega)))
     length, height = 2.0 * math.pi / k, 0.02
@@ -174,13 +177,19 @@ def test_a_small_body_without_drag_surges_and_sways_as_the_water(kind: str, dept
             wind_direction=math.atan2(4.0, 3.0), choppiness=choppiness, precision="double",
         )  # fmt: skip
     else:
-        sea = RadialSea(one, choppiness=0.0) if kind == "sum" else NonlinearSea(64, 5.0 * length, 1, start=one)
-    body = Body(Hull.box(0.5, 0.5, 0.25), density=512.5).afloat()
+        sea = RadialSea(one, choppiness=0.0) if kind == "sum" else NonlinearSea(96, 5.0 * length, 1, start=one)
+    turn = 2.0  # [rad]
+    rotation = (math.cos(turn / 2.0), 0.0, 0.0, math.sin(turn / 2.0))
+    body = Body(Hull.box(0.5, 0.2, 0.1), density=512.5, rotation=rotation).afloat()
     run = float_in(sea, [body], 30.0, frames=301, coefficients=MotionCoefficients(quadratic_drag=0.0))
     wanted = 1.0 / math.tanh(min(k * depth, 300.0)) * 0.5 * height * np.array([0.6, 0.8])
     shape = np.column_stack([np.cos(omega * run.t), np.sin(omega * run.t), np.ones(301), run.t])[60:]
-    found = np.linalg.lstsq(shape, run.x[60:, 0, :2], rcond=None)[0]
-    assert np.hypot(found[0], found[1]) == pytest.approx(wanted, rel=5e-3)
+    yaw = [heading_angle(rotation) - turn for rotation in run.rotation[60:, 0]]
+    found = np.linalg.lstsq(shape, np.column_stack([run.x[60:, 0, :2], yaw]), rcond=None)[0]
+    amplitude = np.hypot(found[0], found[1])
+    assert amplitude[:2] == pytest.approx(wanted, rel=5e-3)
+    response = response_amplitude(body, omega, math.atan2(0.8, 0.6) - turn, water=Water(depth))
+    assert amplitude[2] == pytest.approx(0.5 * height * abs(response[5]), rel=1e-2)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -51,6 +51,10 @@ Object.assign(globalThis, {
   __viserMutable: { canvas: { width: 5, height: 5 } },
 });
 URL.createObjectURL = () => "blob:";
+const { setTimeout } = globalThis;
+// The test does not wait for the timer that frees a saved file after a minute.
+// @ts-expect-error: a timer of Node
+globalThis.setTimeout = (...given) => setTimeout(...given).unref();
 const { toggleClip } = await import("./js/sharing/clip.js");
 const { springtide } = await import("./js/core/springtide.js");
 const notices = () => page.children.map((/** @type {any} */ child) => child.textContent);

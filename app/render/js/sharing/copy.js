@@ -16,8 +16,8 @@ export async function copyNext(clipboard, Item, patience = ASKED) {
   asked?.reject(new Error("pressed again"));
   /** @type {Promise<string>} */
   const link = new Promise((resolve, reject) => {
-    asked = { resolve, reject };
-    setTimeout(() => reject(new Error("late")), patience);
+    const late = setTimeout(() => reject(new Error("late")), patience);
+    asked = { resolve: (text) => { clearTimeout(late); resolve(text); }, reject: (reason) => { clearTimeout(late); reject(reason); } };
   });
   link.catch(() => {}); // it is awaited below
   if (Item && clipboard?.write) {

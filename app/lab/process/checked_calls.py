@@ -126,12 +126,16 @@ class CheckedCalls:
         return found
 
     def edits_in_words(self, numbers: list[int], units: list[tuple[str, str]], most: int) -> list[Any]:
-        """Edits in words, without those that join more than `most` pairs of other units. units: of the arguments."""
+        """Edits in words, without those that join more than `most` pairs of other units, or that no sentence can name.
+
+        units: of the arguments.
+        """
         assert self.tree is not None
         chosen = [(number, self.edits[number][0]) for number in numbers]
         known = dict(units)
-        clear = [(number, candidate) for number, candidate in chosen if self.tree.clashes(candidate, known) <= most]
-        return [[number, *self.tree.words(candidate)] for number, candidate in clear]
+        fitting = [(number, candidate) for number, candidate in chosen if self.tree.clashes(candidate, known) <= most]
+        named = ((number, self.tree.words(candidate)) for number, candidate in fitting)
+        return [[number, *words] for number, words in named if words.is_clear]
 
     def try_edit(self, file: str, target: Callable[..., Any], arguments: list[Any]) -> Any:
         """The result of an edit, which must not warn where the function itself does not. Raises Effect."""

@@ -66,6 +66,12 @@ class EditWords(NamedTuple):
     condition: str
     shown: tuple[Shown, ...]
 
+    @property
+    def is_clear(self) -> bool:
+        """True if a sentence can name what changes: each text is one line, or the cause says it."""
+        says_all = self.cause.endswith("it is right.")
+        return says_all or not any("\n" in text for one in self.shown for text in (one.before, one.after))
+
 
 class Tree:
     """The function of a student and those of the file that it calls, with the place of every node."""
@@ -175,14 +181,21 @@ class Tree:
 
     def shown_node(self, node: ast.AST) -> ast.AST:
         """The expression or statement that shows a replacement: long enough, and the only such one in its line."""
-        if isinstance(node, ast.stmt):
-            return node
         shown = node
-        while isinstance(self.parent(shown), ast.expr) and (
-            len(source_of(shown)) < SHORT or is_sliced(shown) or self.is_double(shown)
-        ):
-            shown = self.parent(shown)
+        while not isinstance(shown, ast.stmt):
+            outer = self.outer(shown)
+            is_clear = isinstance(shown, ast.expr) and not self.is_double(shown)
+            if is_clear and (isinstance(outer, ast.stmt) or not (len(source_of(shown)) < SHORT or is_sliced(shown))):
+                break
+            shown = outer
         return shown
+
+    def outer(self, node: ast.AST) -> ast.AST:
+        """The expression or statement around a node, past keywords and loops inside of brackets."""
+        parent = self.parent(node)
+        while not isinstance(parent, ast.expr | ast.stmt):
+            parent = self.parent(parent)
+        return parent
 
     def is_double(self, node: ast.AST) -> bool:
         """True if the line of an expression holds its text twice."""

@@ -83,7 +83,9 @@ def is_true(runner: Runner, task: Task, source: str, said: Wrong) -> bool:
     """True if what is said of the function in a file holds for it."""
     function, text = function_of(task, source), str(said)
     if says_a_repair(text):
-        return judged(runner, task, followed(source, text)) is None
+        with contextlib.suppress(ValueError):  # a sentence that cannot be followed
+            return judged(runner, task, followed(source, text)) is None
+        return False
     if said.form is not None:
         form = said.form
         return all(

@@ -56,6 +56,7 @@ class Pupil:
         self.task = ""  # as the list of tasks shows it
         self.stiffness = math.nan  # [N/m] as the slider shows it
         self.saves = 0
+        self.links = 0  # followed
         self.news = asyncio.Event()
 
     async def attend(self, seconds: float) -> None:
@@ -159,9 +160,9 @@ class Pupil:
     async def open_task(self, socket: ClientConnection) -> None:
         """Follow a link to a task."""
         item = self.random.choice([item for item in TASKS if item not in self.task])
-        await self.act(
-            "task", lambda: self.send(socket, "From the page", f"pupil\n?task={item}"), lambda: item in self.task
-        )
+        self.links += 1  # the lab takes a text of a page once, by its number
+        text = f"pupil {self.links}\n?task={item}"
+        await self.act("task", lambda: self.send(socket, "From the page", text), lambda: item in self.task)
 
     async def save(self, socket: ClientConnection) -> None:
         """Save a function that works, after one with an error, and wait until each is noticed."""

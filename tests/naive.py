@@ -48,15 +48,38 @@ def link_force(net, family, r, vr):
 
 
 def surfaces(net, x, t):
-    """(depth, normal, surface velocity, is the sphere) of every surface that a point at x touches."""
+    """(depth, normal, surface velocity, is the sphere) of every surface that a point at x touches by itself."""
     if net.floor is not None and x[2] < net.floor + net.radius:
         yield net.floor + net.radius - x[2], np.array([0.0, 0.0, 1.0]), np.zeros(3), False
-    if net.sphere is not None:
-        velocity = np.array(net.sphere_velocity)
-        offset = x - (np.array(net.sphere[:3]) + (t - net.epoch) * velocity)
-        distance = math.sqrt(offset @ offset)
-        if distance < net.sphere[3] + net.radius:
-            yield net.sphere[3] + net.radius - distance, offset / distance, velocity, True
+    if net.sphere is not None and not net.links_touch:
+        yield from on_sphere(net, x, t)
+
+
+def on_sphere(net, x, t):
+    """The same for the sphere alone, of any place x."""
+    velocity = np.array(net.sphere_velocity)
+    offset = x - (np.array(net.sphere[:3]) + (t - net.epoch) * velocity)
+    distance = math.sqrt(offset @ offset)
+    if distance < net.sphere[3] + net.radius:
+        yield net.sphere[3] + net.radius - distance, offset / distance, velocity, True
+
+
+def nearest_part(a, b, centre):
+    """Part of the link from a to b before its place that is nearest to the centre."""
+    r = b - a
+    return min(1.0, max(0.0, (centre - a) @ r / (r @ r)))
+
+
+def link_touches(net, xs, vs, t):
+    """(a, b, s, force, elastic force, slip) of every link that touches the sphere a part s of it from a."""
+    if not net.links_touch:
+        return
+    centre = np.array(net.sphere[:3]) + (t - net.epoch) * np.array(net.sphere_velocity)
+    for a, b, _ in neighbours(net):
+        s = nearest_part(xs[a], xs[b], centre)
+        for depth, normal, velocity, _ in on_sphere(net, (1.0 - s) * xs[a] + s * xs[b], t):
+            slip = (1.0 - s) * vs[a] + s * vs[b] - velocity
+            yield a, b, s, contact_force(net, depth, normal, slip, True), net.contact.stiffness * depth * normal, slip
 
 
 def contact_force(net, depth, normal, vr, on_sphere):
@@ -68,19 +91,37 @@ def contact_force(net, depth, normal, vr, on_sphere):
     return max(0.0, law.stiffness * depth - law.damping * vn) * normal
 
 
-def friction(net, mass, depth, normal, vr, others, h):
-    """Friction [N] on a touching point at vr relative to the surface, under the sum of all other forces [N].
+def loads(net, xs, vs, t):
+    """{(i, j): [(force, surface velocity)]} of the points that floor and sphere press, by their links too."""
+    found = {}
+    for i, j in itertools.product(*map(range, net.shape)):
+        found[i, j] = [
+            (contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere), velocity)
+            for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t)
+        ]
+    shares = {}
+    for a, b, s, force, _, _ in link_touches(net, xs, vs, t):
+        for end, share in ((a, 1.0 - s), (b, s)):
+            shares[end] = shares.get(end, 0.0) + share * force
+    for end, force in shares.items():
+        found[end].append((force, np.array(net.sphere_velocity)))
+    return found
+
+
+def friction(net, mass, force, vr, others, h):
+    """Friction [N] on a point at vr relative to a surface that presses it, under the sum of all other forces [N].
 
     It stops the point within a step of h [s] if mu N is enough. It acts along the velocity of a point that it cannot
     stop within two steps, with a continuous change between.
     """
     if net.contact.law == "lab" or net.contact.friction == 0.0:
         return np.zeros(3)
-    most = net.contact.friction * (contact_force(net, depth, normal, vr, False) @ normal)
+    push = np.linalg.norm(force)
+    if push == 0.0:
+        return np.zeros(3)
+    most, normal = net.contact.friction * push, force / push
     across = np.eye(3) - np.outer(normal, normal)
     slide, pull = mass / h * across @ vr, across @ others
-    if most == 0.0:
-        return np.zeros(3)
     needed = slide + min(1.0, max(0.0, 2.0 - np.linalg.norm(slide) / most)) * pull
     return -needed * min(1.0, most / max(np.linalg.norm(needed), 1e-300))
 
@@ -121,15 +162,16 @@ def acceleration(net, x, v, t=0.0, h=1.0):
     for a, b, f in own_contacts(net, xs, vs):
         force[a] -= f
         force[b] += f
+    pressed = loads(net, xs, vs, t)
     for i in range(rows):
         for j in range(cols):
             force[i, j] += net.masses[i, j] * np.array(net.gravity) - net.drag * vs[i, j]
-            for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t):
-                force[i, j] += contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere)
+            for load, _ in pressed[i, j]:
+                force[i, j] += load
             if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
                 force[i, j] += grab_force(net.grab, xs[i, j], vs[i, j])
-            for depth, normal, velocity, _ in surfaces(net, xs[i, j], t):
-                force[i, j] += friction(net, net.masses[i, j], depth, normal, vs[i, j] - velocity, force[i, j], h)
+            for load, velocity in pressed[i, j]:
+                force[i, j] += friction(net, net.masses[i, j], load, vs[i, j] - velocity, force[i, j], h)
             if (i, j) in net.pinned:
                 force[i, j] = 0.0
     return np.moveaxis(force / net.masses[..., None], -1, 0)

@@ -259,8 +259,8 @@ other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
 hold_all = each("hold", "x, v, t, s, p, foreseen", "sum", allocates=False)
 foresee_all = each("foresee", "x, v, t, p", "none", allocates=False)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
-# The same where the damping of contact is inside the kick of each point.
-beside = [force for force in FORCES if force.name != "contact"]
+# The same where the damping of contact is inside the kick of each point and link.
+beside = [force for force in FORCES if force.name not in ("contact", "link_contact")]
 damp_beside = each("damp", "x, v, t, s, p, reverse", "sum", beside, turns=True, allocates=False)
 
 

@@ -26,6 +26,7 @@ from sim.validation import (
     argument_error,
     as_array,
     check_choice,
+    check_kind,
     check_number,
     check_positive,
     check_vector,
@@ -56,17 +57,18 @@ class Family(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Penalty contact of points with floor and sphere.
+    """Penalty contact with floor and sphere, of points and of a rope's links.
 
     law "clipped": normal force max(0, k depth - b v_n), which never pulls (Schwager & Poeschel, cond-mat/0701278),
     and Coulomb friction. law "lab": the original's k depth n - b v, with the whole velocity and while separating,
     so that surfaces are sticky and viscous; its sphere scales b by the depth.
     """
 
-    stiffness: float = 800.0  # [N/m] per point
-    damping: float = 5.0  # [N s/m] per point
+    stiffness: float = 800.0  # [N/m] per point or link
+    damping: float = 5.0  # [N s/m] per point or link
     friction: float = 0.0  # Coulomb coefficient, law "clipped" only
     law: str = "clipped"
+    links: bool = True  # with "clipped", a rope's links touch the sphere as capsules of its radius; False: its points
 
 
 PLAIN_CONTACT = Contact()
@@ -119,7 +121,7 @@ class Net(PointSystem[Run]):
     sphere_velocity: Vector = (0.0, 0.0, 0.0)  # [m/s]
     epoch: float = 0.0  # [s], when the sphere is at its centre
     contact: Contact = PLAIN_CONTACT
-    radius: float = 0.0  # [m]: a point touches at this distance
+    radius: float = 0.0  # [m]: points and links touch at this distance
     pin_paths: tuple[tuple[tuple[int, int], PinPath], ...] = ()
     grab: Grab | None = None
     air: Air | None = None
@@ -208,6 +210,12 @@ class Net(PointSystem[Run]):
         """One row or one column of points, each linked to the next only."""
         offsets = [f[:2] for f in self.families]
         return (offsets == [(0, 1)] and self.x0.shape[1] == 1) or (offsets == [(1, 0)] and self.x0.shape[2] == 1)
+
+    @property
+    def links_touch(self) -> bool:
+        """True if the links touch the sphere, else the points do."""
+        has_links = self.is_chain and self.x0[0].size > 1 and self.thickness == 0.0
+        return has_links and self.sphere is not None and self.contact.links and self.contact.law == "clipped"
 
     @property
     def is_damped(self) -> bool:
@@ -459,6 +467,7 @@ def check_surroundings(
     check_number("contact.damping", contact.damping, "N s/m", 0)
     check_number("contact.friction", contact.friction, "", 0)
     check_choice("contact.law", contact.law, CONTACT_LAWS)
+    check_kind("contact.links", contact.links, bool, "True or False")
     if floor is not None:
         check_number("floor", floor, "m")
     if sphere is not None:

@@ -137,7 +137,8 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
 
     omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m_i and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m_i,
     the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
-    touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out.
+    touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out, and the
+    motion of the place at which a turning link touches the sphere.
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
@@ -151,9 +152,10 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
             damping[end] += 2.0 * f.damping * ratios
     # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
     depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
-    touched = (net.floor is not None) + (net.sphere is not None) * depth
-    damping += net.drag + touched * net.contact.damping
-    stiffness += ((net.floor is not None) + (net.sphere is not None)) * net.contact.stiffness
+    # A point between two links that touch the sphere has the force of both.
+    on_sphere = (net.sphere is not None) * (2.0 if net.links_touch else 1.0)
+    damping += net.drag + ((net.floor is not None) + on_sphere * depth) * net.contact.damping
+    stiffness += ((net.floor is not None) + on_sphere) * net.contact.stiffness
     if net.thickness > 0.0:
         touching = most_touching(net, x)
         damping += 2.0 * touching * net.contact.damping

@@ -45,6 +45,7 @@ class StudentReport(NamedTuple):
     left_at: float = math.nan  # [s] when it left its bounds
     difference: float = math.nan  # [m] largest distance between the same points of both; NaN if the points differ
     unlike: tuple[str, ...] = ()  # reasons why a right solution differs from the program's, with the parameter first
+    left_out: tuple[str, ...] = ()  # effects that the program's leaves out for it, as the tasks do
     grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, if coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]

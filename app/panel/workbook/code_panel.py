@@ -232,6 +232,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         said.append(fill(what, rows, cols))
     if not report.difference < ROUNDING:
         said += [faint(line) for line in report.unlike]
+    said += [faint(line) for line in report.left_out]
     if report.restarts:
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
         said.append(faint(f"It fell behind {often}, so it was restarted from the built-in {scene}."))

@@ -45,9 +45,10 @@ PLOTS = {
 }
 
 
-def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
-    """The net that the parameters describe, with root and sphere centre there [m]."""
-    return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
+def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE, *, links_touch: bool = True) -> Net:
+    """The net that the parameters describe, with root and sphere centre there [m], see `build_rope`."""
+    ball = (*sphere, params.sphere_radius) if params.sphere else None
+    return build_rope(params, root, ball, links_touch=links_touch)
 
 
 def warm_up(law: str = SPRING) -> Pieces:
@@ -129,10 +130,15 @@ class RopeScene(NetScene[RopeParams]):
         """Advice on a faster step."""
         return faster_steps(self.motion.method, self.stability.stability, "points")
 
+    def build(self, params: RopeParams) -> Net:
+        """The net that the parameters describe. Beside a student's rope only points touch, as the tasks have it."""
+        handles = self.handles
+        return build(params, handles.root.position, handles.sphere.position, links_touch=self.student is None)
+
     def reset(self) -> None:
         """The rope at rest, level from its root; root and sphere where a new scene has them."""
         self.handles.restart()
-        self.place_at_rest(build(self.params, self.handles.root.position, self.handles.sphere.position), rope_bound)
+        self.place_at_rest(self.build(self.params), rope_bound)
         self.max_speed = np.inf  # [m/s] of the fastest point along an axis; how fast it is going to be is not known
         self.assess_stability()
         if self.student is not None:
@@ -149,7 +155,7 @@ class RopeScene(NetScene[RopeParams]):
     def change_forces(self, params: RopeParams) -> None:
         """Take new parameters. The motion continues, interpolated where the number of points changes."""
         old, self.params = self.params, params
-        self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
+        self.take_net(self.build(params))
         self.max_speed = np.inf
         self.assess_stability()
         if self.student is not None and (params.points, params.integrator) != (old.points, old.integrator):

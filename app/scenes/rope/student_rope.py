@@ -18,7 +18,7 @@ class StudentRope(StudentNet):
         self, net: Net, start: float, steps: int, params: RopeParams, x: NDArray[np.float64], v: NDArray[np.float64]
     ) -> None:
         """The program's rope has taken steps from time `start` [s], and is at x with velocities v, shape (n, 3)."""
-        self.unlike = unlike(params)
+        self.unlike, self.left_out = unlike(params), left_out(params)
         path = np.array([path.coefficients for _, path in net.pin_paths]).reshape(-1, 4, 3)
         segment = Segment(steps, params.time_step, forces_of(net, start), path)
         self.follow(segment, start + steps * params.time_step, params.integrator, x, v)
@@ -41,3 +41,10 @@ def unlike(params: RopeParams) -> tuple[str, ...]:
     if params.sphere and params.contact_law == "lab":
         lines.append("Contact law: the program's sphere may pull, as in the lab's code; sphere_force only pushes.")
     return tuple(lines)
+
+
+def left_out(params: RopeParams) -> tuple[str, ...]:
+    """The effects that the program's rope leaves out beside a student's, as the tasks do, a line each."""
+    if params.sphere and params.contact_law != "lab":
+        return ("Sphere: only the points of both ropes touch it, as in sphere_force. A link passes a small sphere.",)
+    return ()

@@ -11,7 +11,7 @@ from sim.springs.net import CONTACT_LAWS, DAMPING_MODELS
 
 ROOT: Vector = (0.0, 0.0, 3.0)  # [m]
 SPHERE: Vector = (-0.45, 0.12, 1.6)  # [m], a little behind the rope, so that the rope slides off in view
-ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
+ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points and links for contact
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,11 +98,19 @@ def link_and_point(params: SharedRopeParams) -> dict[str, float]:
 
 
 def build_rope(
-    params: SharedRopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None
+    params: SharedRopeParams,
+    root: Vector = ROOT,
+    sphere: tuple[float, float, float, float] | None = None,
+    *,
+    links_touch: bool = True,
 ) -> Net:
-    """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None."""
+    """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None.
+
+    links_touch: False: only the points of the rope touch the sphere.
+    """
     lab = link_and_point(params)
-    contact = Contact(params.contact_stiffness, params.contact_damping, params.friction, params.contact_law)
+    p = params
+    contact = Contact(p.contact_stiffness, p.contact_damping, p.friction, p.contact_law, links_touch)
     return rope(
         params.points,
         params.length,

@@ -28,6 +28,7 @@ class StudentNet:
 
     sheet: ClothData | None = None  # data of a cloth; None for a rope
     unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
+    left_out: tuple[str, ...] = ()
 
     def __init__(self, live: LiveNet) -> None:
         self.live = live
@@ -124,7 +125,7 @@ class StudentNet:
         table = np.array(self.rows).reshape(-1, 2)
         self.live.report = self.live.report._replace(
             version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method, unlike=self.unlike,
-            sphere=any(segment.forces.sr > 0.0 for segment in segments),
+            left_out=self.left_out, sphere=any(segment.forces.sr > 0.0 for segment in segments),
             seconds=march.step_time, step=segments[-1].h,
             behind=sum(segment.steps * segment.h for segment in self.waiting),
             left_at=self.time if left else math.nan,

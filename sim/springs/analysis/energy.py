@@ -85,9 +85,9 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 
 
 # Power [W] that moving pins put in through all damping.
-pins_damping_power = each("pins_power", "x, v, p", "sum")
+pins_damping_power = each("pins_power", "x, v, t, p", "sum")
 # The same without that of the links' damping.
-pins_contact_power = each("pins_power", "x, v, p", "sum", [force for force in FORCES if force.name != "links"])
+pins_contact_power = each("pins_power", "x, v, t, p", "sum", [force for force in FORCES if force.name != "links"])
 
 
 @kernel(inline=True)
@@ -105,7 +105,7 @@ def open_damping(v, p, before):
 
 
 @kernel(allocates=False)
-def close_damping(x, v, p, s, kinetic, by_sphere, with_links, before, ledger):
+def close_damping(x, v, t, p, s, kinetic, by_sphere, with_links, before, ledger):
     """Book the work of damping in a time s [s] since `open_damping`, which returned `kinetic`.
 
     The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What moving pins put in
@@ -116,7 +116,7 @@ def close_damping(x, v, p, s, kinetic, by_sphere, with_links, before, ledger):
     if p.pins.shape[0] > 0:
         for j in range(v.shape[0]):
             before[j] = 0.5 * (before[j] + v[j])
-        put_in += s * (pins_damping_power(x, before, p) if with_links else pins_contact_power(x, before, p))
+        put_in += s * (pins_damping_power(x, before, t, p) if with_links else pins_contact_power(x, before, t, p))
     ledger[0] += kinetic - kinetic_energy(v, p) + put_in
     ledger[1] += put_in
 

@@ -1,16 +1,17 @@
-"""Penalty contact with floor and sphere; `sim.springs.forces.friction` has its friction."""
+"""Penalty contact of points with floor and sphere; `sim.springs.forces.friction` has its friction.
+
+A rope's links touch the sphere instead of its points, if they touch it (`sim.springs.forces.link_contact`).
+"""
 
 import math
 
-from sim import point_laws
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.kicks.formula import relaxed, shares
 from sim.springs.points.arrays import push
-from sim.springs.points.each_contact import each_contact, slip, surface_velocity, touching
-
-contact_force = kernel(inline=True)(point_laws.contact_force)
+from sim.springs.points.each_contact import each_contact, points_meet_sphere, slip, surface_velocity
+from sim.springs.points.link_places import contact_force, touching
 
 
 @each_contact(noalias=True)
@@ -96,7 +97,7 @@ def kick_touching(x, v, a, drag, t, s, p, mean):
             if depth > 0.0:
                 work += push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, False)
                 kicked = True
-        if p.has_sphere:
+        if points_meet_sphere(p):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, True)
             if depth > 0.0 and not kicked:
                 work += push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, True)

@@ -1,9 +1,11 @@
-"""Coulomb's law between points and the surfaces that they touch, solved in each step.
+"""Coulomb's law between points and the surfaces that press them, solved in each step.
 
 In a step of h a point gets the tangential force that stops it against the sum of all other forces, -m (v_t/h + a_t), at
 most mu N. So a point that can rest does: its velocity is exactly the surface's, and where it rests is its position,
 without a memory of its own. A sliding point gets mu N against its velocity. Each impulse is the one of Moreau's
 time-stepping (J. J. Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics, section 10).
+
+Where a rope's links touch the sphere, N is the share of the force on its links that each point takes.
 """
 
 import math
@@ -13,7 +15,7 @@ from sim.jit import kernel
 from sim.springs.forces.matrices import FRICTION, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.points.arrays import mass_at
-from sim.springs.points.each_contact import each_contact, slip
+from sim.springs.points.each_contact import each_load, slip
 
 stopping = kernel(inline=True)(point_laws.stopping)
 
@@ -28,16 +30,10 @@ def set_at(out, i, n, fx, fy, fz):
     out[i], out[i + n], out[i + 2 * n] = fx, fy, fz
 
 
-@kernel(inline=True)
-def grip(depth, vn, w, p):
-    """Largest deceleration [m/s^2] by friction of a point of inverse mass w that leaves its surface at vn [m/s]."""
-    return p.friction * max(0.0, p.contact_k * depth - p.contact_b * vn) * w
-
-
-@each_contact(noalias=True)
-def hold_against_others(touch, x, v, t, p, a):
-    w, n = p.inverse_masses[touch.j], p.rows * p.cols
-    i, o = touch.j, touch.j + (3 * n if touch.on_sphere else 0)
+@each_load(noalias=True)
+def hold_against_others(load, x, v, t, p, a):
+    w, n = p.inverse_masses[load.j], p.rows * p.cols
+    i, o = load.j, load.j + (3 * n if load.on_sphere else 0)
     if w == 0.0:
         set_at(p.held, o, n, 0.0, 0.0, 0.0)
         return
@@ -46,9 +42,9 @@ def hold_against_others(touch, x, v, t, p, a):
         set_at(p.load, o, n, ax, ay, az)
     elif p.load_is[0] == FIXED:
         ax, ay, az = p.load[o], p.load[o + n], p.load[o + 2 * n]
-    nx, ny, nz = touch.nx, touch.ny, touch.nz
-    ru, rv, rw = slip(v, n, touch)
-    most = grip(touch.depth, ru * nx + rv * ny + rw * nz, w, p)
+    nx, ny, nz = load.nx, load.ny, load.nz
+    ru, rv, rw = slip(v, n, load)
+    most = p.friction * load.push * w
     sx, sy, sz, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
     a[i] -= part * sx
     a[n + i] -= part * sy
@@ -66,35 +62,35 @@ def accelerate(x, v, t, p, with_damping, f, a):
     hold_against_others(x, v, t, p, a)
 
 
-@each_contact()
-def foresee(touch, x, v, t, p):
+@each_load()
+def foresee(load, x, v, t, p):
     """Set p.held to the friction of points that slide at v, before a kick that `hold` ends."""
     n = p.rows * p.cols
-    nx, ny, nz = touch.nx, touch.ny, touch.nz
-    ru, rv, rw = slip(v, n, touch)
+    nx, ny, nz = load.nx, load.ny, load.nz
+    ru, rv, rw = slip(v, n, load)
     vn = ru * nx + rv * ny + rw * nz
     tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-    most, speed = grip(touch.depth, vn, p.inverse_masses[touch.j], p), math.sqrt(tx * tx + ty * ty + tz * tz)
+    most, speed = p.friction * load.push * p.inverse_masses[load.j], math.sqrt(tx * tx + ty * ty + tz * tz)
     # A point that friction could stop in the kick may be at rest, where the direction of its motion is round-off.
     over = -most / speed if p.stop_rate * speed > 0.5 * most else 0.0
-    set_at(p.held, touch.j + (3 * n if touch.on_sphere else 0), n, over * tx, over * ty, over * tz)
+    set_at(p.held, load.j + (3 * n if load.on_sphere else 0), n, over * tx, over * ty, over * tz)
 
 
-@each_contact("sum")
-def hold(touch, x, v, t, s, p, foreseen):
+@each_load("sum")
+def hold(load, x, v, t, s, p, foreseen):
     """Friction for a time s, last in a kick, which stops points that it can stop. Returns the sphere's work [J].
 
     foreseen: of other points, the friction that `foresee` has set, for a kick that mirrors one without.
     """
-    j, n, w = touch.j, p.rows * p.cols, p.inverse_masses[touch.j]
+    j, n, w = load.j, p.rows * p.cols, p.inverse_masses[load.j]
     if w == 0.0:
         return 0.0
-    o = j + (3 * n if touch.on_sphere else 0)
-    nx, ny, nz = touch.nx, touch.ny, touch.nz
-    ru, rv, rw = slip(v, n, touch)
+    o = j + (3 * n if load.on_sphere else 0)
+    nx, ny, nz = load.nx, load.ny, load.nz
+    ru, rv, rw = slip(v, n, load)
     vn = ru * nx + rv * ny + rw * nz
     tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-    slow, speed = grip(touch.depth, vn, w, p) * s, math.sqrt(tx * tx + ty * ty + tz * tz)
+    slow, speed = p.friction * load.push * w * s, math.sqrt(tx * tx + ty * ty + tz * tz)
     fx, fy, fz = s * p.held[o], s * p.held[o + n], s * p.held[o + 2 * n]
     if speed <= slow:
         fx, fy, fz = -tx, -ty, -tz
@@ -103,17 +99,17 @@ def hold(touch, x, v, t, s, p, foreseen):
     v[j] += fx
     v[n + j] += fy
     v[2 * n + j] += fz
-    return (fx * touch.su + fy * touch.sv + fz * touch.sw) / w
+    return (fx * load.su + fy * load.sv + fz * load.sw) / w
 
 
-@each_contact("two sums")
-def power_of_held(touch, x, v, t, p):
+@each_load("two sums")
+def power_of_held(load, x, v, t, p):
     """(dissipated, put in by a moving sphere) [W] by the accelerations that `accelerate` has last written to p.held."""
     n = p.rows * p.cols
-    m, o = mass_at(p, touch.j), touch.j + (3 * n if touch.on_sphere else 0)
-    u, q, r = slip(v, n, touch)
+    m, o = mass_at(p, load.j), load.j + (3 * n if load.on_sphere else 0)
+    u, q, r = slip(v, n, load)
     fx, fy, fz = m * p.held[o], m * p.held[o + n], m * p.held[o + 2 * n]
-    return -(fx * u + fy * q + fz * r), fx * touch.su + fy * touch.sv + fz * touch.sw
+    return -(fx * u + fy * q + fz * r), fx * load.su + fy * load.sv + fz * load.sw
 
 
 @kernel(allocates=False)
@@ -121,24 +117,24 @@ def power(x, v, t, p, with_damping):
     return power_of_held(x, v, t, p) if with_damping else (0.0, 0.0)
 
 
-@each_contact(noalias=True)
-def tangent(touch, x, u, t, p, part, longest, out):
-    """M across the normals of the touching points, as part FRICTION."""
+@each_load(noalias=True)
+def tangent(load, x, u, t, p, part, longest, out):
+    """M across the normals of the loaded points, as part FRICTION."""
     if part == FRICTION:
-        add_product(out, u, touch.j, p.rows * p.cols, 0.0, mass_at(p, touch.j), touch.nx, touch.ny, touch.nz)
+        add_product(out, u, load.j, p.rows * p.cols, 0.0, mass_at(p, load.j), load.nx, load.ny, load.nz)
 
 
-@each_contact()
-def blocks(touch, x, v, t, g, p, points):
-    """The secant of the force over the sliding speed, of each touching point, as against noted accelerations."""
+@each_load()
+def blocks(load, x, v, t, g, p, points):
+    """The secant of the force over the sliding speed, of each loaded point, as against noted accelerations."""
     n = p.rows * p.cols
-    o = touch.j + (3 * n if touch.on_sphere else 0)
-    nx, ny, nz = touch.nx, touch.ny, touch.nz
-    ru, rv, rw = slip(v, n, touch)
-    most = grip(touch.depth, ru * nx + rv * ny + rw * nz, p.inverse_masses[touch.j], p)
+    o = load.j + (3 * n if load.on_sphere else 0)
+    nx, ny, nz = load.nx, load.ny, load.nz
+    ru, rv, rw = slip(v, n, load)
+    most = p.friction * load.push * p.inverse_masses[load.j]
     ax, ay, az = p.load[o], p.load[o + n], p.load[o + 2 * n]
     _, _, _, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
-    add_block(points, touch.j, n, 0.0, g * mass_at(p, touch.j) * p.stop_rate * part, nx, ny, nz)
+    add_block(points, load.j, n, 0.0, g * mass_at(p, load.j) * p.stop_rate * part, nx, ny, nz)
 
 
 FORCE = Force(

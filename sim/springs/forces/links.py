@@ -194,7 +194,7 @@ def power(x, v, t, p, with_damping):
 
 
 @kernel(inline=True)
-def pins_power(x, v, p):
+def pins_power(x, v, t, p):
     return moving_pins_power(x, v, p, 0.0, 1.0)
 
 

@@ -50,9 +50,11 @@ class Force(NamedTuple):
     foresee: Any = None
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
-    pins_power: Any = None  # (x, v, p) -> power that moving pins put in through its damping [W]
+    pins_power: Any = None  # (x, v, t, p) -> power that moving pins put in through its damping [W]
     tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
     blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
+    # (x, v, t, g, p, pairs): of a rope, adds g D + g^2 K between the ends of each link, at its first one, symmetric
+    pair_blocks: Any = None
     # Of a force with numbers, a function of these: most stiffness [N/m] and damping [N s/m] at any point.
     bound: Callable[[Any], tuple[float, float]] = no_bound
     stores: str = "gravity"  # field of `Energy` that its energy counts in

@@ -231,8 +231,8 @@ def energy(x, t, p):
 
 
 @kernel
-def pins_power(x, v, p):
-    return power(x, v, 0.0, p, True)[1] - power(x, v, 0.0, p, False)[1]
+def pins_power(x, v, t, p):
+    return power(x, v, t, p, True)[1] - power(x, v, t, p, False)[1]
 
 
 @kernel(noalias=True, allocates=False)

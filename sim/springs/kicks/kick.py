@@ -5,7 +5,7 @@ decay of each, which is quick. A splitting is right only there. With y the rate 
 speed is wrong by y^2/12 (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping: links and
 drag in one system (`sim.springs.kicks.formula`), drag alone exactly. Which of these it is depends on the net and the
 step alone, so that it is the same in every call. The normal damping of floor and sphere is inside the kick of each
-point; it is taken apart only where links and drag are one system.
+point or touching link; it is taken apart only where links and drag are one system.
 """
 
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, close_damping, kinetic_energy, open_damping
 from sim.springs.damping import damp_beside, damp_lines, damp_motion, damp_others, foresee_all, hold_all, other_acts
 from sim.springs.forces.contact import kick_touching
+from sim.springs.forces.link_contact import damp_kicked
 from sim.springs.kicks.chain import factor_chain, make_chain, solve_chain
 from sim.springs.kicks.dampers import (
     MOST_CHANGES,
@@ -193,12 +194,9 @@ def close_kick(v, a, s, p, kinetic, put_in, mean, ledger):
     ledger[1] += put_in
 
 
-@kernel(allocates=False)
-def kick_points(x, v, a, t, s, room, p, with_account):
-    """Kick each point by itself, with drag and the normal damping of contact inside.
-
-    Returns the work [J] that a moving sphere did by its damping.
-    """
+@kernel(inline=True)
+def kick_alone(x, v, a, t, s, room, p, with_account):
+    """`kick_points` without the damping of links that touch the sphere."""
     n, drag = np.uint64(p.rows * p.cols), p.drag if room.kind == FREE else 0.0
     if touches(x, t, p, False) or touches(x, t, p, True):
         return kick_touching(x, v, a, drag, t, s, p, room.mean)
@@ -214,6 +212,22 @@ def kick_points(x, v, a, t, s, room, p, with_account):
     return 0.0
 
 
+# Normal damping of links that touch the sphere, in the kick of their points.
+damp_links_kicked = by_net(
+    rope=damp_kicked, grid=kernel(lambda x, v, a, mean, t, s, p, reverse: 0.0, inline=True)
+)  # fmt: skip
+
+
+@kernel(allocates=False)
+def kick_points(x, v, a, t, s, closing, room, p, with_account):
+    """Kick each point by itself, with drag and the normal damping of contact inside.
+
+    Returns the work [J] that a moving sphere did by its damping.
+    """
+    kicked = kick_alone(x, v, a, t, s, room, p, with_account)
+    return kicked + damp_links_kicked(x, v, a, room.mean, t, s, p, closing)
+
+
 @kernel(inline=True)
 def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
     """The forces of position, and the damping that is inside of their kick."""
@@ -224,7 +238,7 @@ def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
     if room.kind == WHOLE:
         put_in = kick_whole(x, v, a, s, closing, room, p, ledger)
     else:
-        put_in = kick_points(x, v, a, t, s, room, p, with_account)
+        put_in = kick_points(x, v, a, t, s, closing, room, p, with_account)
     if with_account:
         close_kick(v, a, s, p, kinetic, put_in, room.mean, ledger)
 
@@ -266,7 +280,7 @@ def hold_net(x, v, t, s, room, p, foreseen, with_account, ledger):
         kinetic = open_damping(v, p, room.before) if with_account else 0.0
         by_sphere = hold_all(x, v, t, s, p, foreseen)
         if with_account:
-            close_damping(x, v, p, 0.0, kinetic, by_sphere, False, room.before, ledger)
+            close_damping(x, v, t, p, 0.0, kinetic, by_sphere, False, room.before, ledger)
 
 
 @kernel(inline=True)
@@ -299,5 +313,5 @@ def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
             kinetic = open_damping(v, p, room.before) if with_account else 0.0
             by_sphere = damp_outside(x, v, t, s, decay, room.kind, p, reverse)
             if with_account:
-                close_damping(x, v, p, s, kinetic, by_sphere, room.kind == SPLIT, room.before, ledger)
+                close_damping(x, v, t, p, s, kinetic, by_sphere, room.kind == SPLIT, room.before, ledger)
     hold(x, v, t, s, room, p, closing, with_account, ledger)

@@ -33,10 +33,11 @@ class RopeArrays(NamedTuple):
     has_floor: bool
     floor: float  # [m] where points meet it
     has_sphere: bool
+    links_touch: bool  # the links meet it, not the points
     sx: float  # sphere centre at time `epoch` [m]
     sy: float
     sz: float
-    sr: float  # radius at which points meet it [m]
+    sr: float  # radius at which points and links meet it [m]
     svx: float  # sphere velocity [m/s]
     svy: float
     svz: float

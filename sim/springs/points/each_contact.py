@@ -1,21 +1,20 @@
-"""`each_contact`: the one loop over the points of ropes, cloths and other nets that touch the floor or the sphere.
+"""`each_contact` and `each_load`: the loops over points of ropes, cloths and other nets that floor and sphere press.
 
-Its source is written when the program starts, like that of `each_link`. It stands there once for each surface, which is
-thus a constant that LLVM makes use of.
+Their source is written when the program starts, like that of `each_link`. It stands there once for each surface, which
+is thus a constant that LLVM makes use of.
 """
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim import point_laws
 from sim.jit import generated, kernel
+from sim.springs.points.arrays import by_net
 from sim.springs.points.each_link import LOOPS
-
-touching = kernel(inline=True)(point_laws.touching)
+from sim.springs.points.link_places import links_near, place_on_link, push_on_link, sphere_gap, touching
 
 
 class Touch(NamedTuple):
@@ -25,6 +24,20 @@ class Touch(NamedTuple):
     on_sphere: bool  # else on the floor
     depth: float  # [m], above 0
     nx: float  # normal of the surface
+    ny: float
+    nz: float
+    su: float  # velocity of the surface [m/s]
+    sv: float
+    sw: float
+
+
+class Load(NamedTuple):
+    """A point that a surface presses, by itself or through its share of the forces on its links."""
+
+    j: int
+    on_sphere: bool  # else by the floor
+    push: float  # normal force [N], 0 or above
+    nx: float  # its direction
     ny: float
     nz: float
     su: float  # velocity of the surface [m/s]
@@ -48,30 +61,40 @@ def lowest(x, n):
     return least
 
 
-@kernel(noalias=True, inline=True)
-def nearest(x, n, cx, cy, cz):
-    """Least squared distance of any point from (cx, cy, cz)."""
-    least = math.inf
-    for j in range(n):
-        dx, dy, dz = x[j] - cx, x[n + j] - cy, x[n + n + j] - cz
-        least = min(least, dx * dx + dy * dy + dz * dz)
-    return least
+# False if there is no sphere, or a rope's links meet it instead.
+points_meet_sphere = kernel(lambda p: p.has_sphere and not p.links_touch, inline=True)
 
 
 @kernel(noalias=True, allocates=False)
 def touches(x, t, p, on_sphere):
-    """True if any point is in contact."""
+    """True if any point is in contact by itself."""
     n = np.uint64(p.rows * p.cols)
     if on_sphere:
-        s = t - p.epoch
-        return p.has_sphere and nearest(x, n, p.sx + s * p.svx, p.sy + s * p.svy, p.sz + s * p.svz) < p.sr * p.sr
+        return points_meet_sphere(p) and sphere_gap(x, n, t, p) < 0.0
     return p.has_floor and lowest(x, n) < p.floor
 
 
 @kernel(inline=True)
 def slip(v, n, touch):
-    """Velocity [m/s] of a touching point relative to the surface."""
+    """Velocity [m/s] of a touching or loaded point relative to the surface."""
     return v[touch.j] - touch.su, v[n + touch.j] - touch.sv, v[2 * n + touch.j] - touch.sw
+
+
+@kernel(inline=True)
+def load_of(touch, v, n, p, with_damping):
+    """The `Load` of a point that touches a surface by itself."""
+    u, q, r = slip(v, n, touch)
+    rate = p.contact_b * (u * touch.nx + q * touch.ny + r * touch.nz) if with_damping else 0.0
+    push = max(0.0, p.contact_k * touch.depth - rate)
+    return Load(touch.j, touch.on_sphere, push, touch.nx, touch.ny, touch.nz, touch.su, touch.sv, touch.sw)
+
+
+@kernel(inline=True)
+def sphere_load(j, gx, gy, gz, p):
+    """The `Load` of a point whose links pass on the force (gx, gy, gz) [N] of the sphere."""
+    push = math.sqrt(gx * gx + gy * gy + gz * gz)
+    scale = 1.0 / push if push > 0.0 else 0.0
+    return Load(j, True, push, scale * gx, scale * gy, scale * gz, p.svx, p.svy, p.svz)
 
 
 SURFACE = """
@@ -81,24 +104,74 @@ SURFACE = """
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, {surface})
             if depth > 0.0:
                 {within}"""
+# The force on each link is shared by the place of contact: (1 - s) to its first point and s to its second.
+LINKS = """
+    if links_near(x, t, p):
+        bx = by = bz = 0.0
+        is_touched = False
+        for j in range(n):
+            gx, gy, gz, is_loaded = bx, by, bz, is_touched
+            bx = by = bz = 0.0
+            is_touched = False
+            if j + 1 < n:
+                place = place_on_link(x, t, p, j)
+                if place.depth > 0.0:
+                    fx, fy, fz = push_on_link({velocities}, p, place, {with_damping})
+                    bx, by, bz = place.s * fx, place.s * fy, place.s * fz
+                    gx, gy, gz = gx + fx - bx, gy + fy - by, gz + fz - bz
+                    is_loaded = is_touched = True
+            if is_loaded:
+                {within}"""
+TOUCH = "Touch(j, {surface}, depth, nx, ny, nz, su, sv, sw)"
+LOAD_OF_POINT = f"load_of({TOUCH}, {{velocities}}, n, p, {{with_damping}})"
+LOAD_BY_LINKS = "sphere_load(j, gx, gy, gz, p)"
+NAMES = {
+    "Touch": Touch, "touches": touches, "touching": touching, "surface_velocity": surface_velocity, "load_of": load_of,
+    "links_near": links_near, "place_on_link": place_on_link, "push_on_link": push_on_link, "sphere_load": sphere_load,
+}  # fmt: skip
+
+
+def loop(
+    function: Callable[..., Any], name: str, pieces: Sequence[tuple[str, dict[str, str]]], result: str, *, noalias: bool
+) -> Any:
+    """A kernel of the arguments of `function` after the first, which is `item` of each piece of source."""
+    before, within, after = LOOPS[result]
+    arguments = ", ".join(list(inspect.signature(function).parameters)[1:])
+    source = [f"def {function.__name__}_{name}({arguments}):\n    {before}\n    n = p.rows * p.cols"]
+    for piece, values in pieces:
+        item = values["item"].format(**values)
+        source.append(piece.format(within=within.format(call=f"visit({item}, {arguments})"), **values))
+    visit = kernel(function, noalias=noalias, inline=True)
+    names = {"visit": visit, **NAMES}
+    return generated("".join([*source, f"\n    {after}"]), names, function.__module__, noalias=noalias, allocates=False)
 
 
 def each_contact(result: str = "nothing", *, noalias: bool = False) -> Callable[[Callable[..., Any]], Any]:
     """Make a function of a touching point and other arguments, x, t and p among them, a kernel of these that calls it
-    for every point that touches the floor, then for every point that touches the sphere.
+    for every point that touches the floor by itself, then for every point that touches the sphere.
 
     The point is a `Touch`. result: a key of LOOPS. noalias: as of `kernel`.
     """
-    before, within, after = LOOPS[result]
 
     def made(function: Callable[..., Any]) -> Any:
-        arguments = ", ".join(list(inspect.signature(function).parameters)[1:])
-        visit = f"visit(Touch(j, {{surface}}, depth, nx, ny, nz, su, sv, sw), {arguments})"
-        surface = SURFACE.replace("{within}", within.format(call=visit))
-        head = f"def {function.__name__}_of_contacts({arguments}):\n    {before}\n    n = p.rows * p.cols"
-        source = "".join([head, surface.format(surface=False), surface.format(surface=True), f"\n    {after}"])
-        names = {"visit": kernel(function, noalias=noalias, inline=True), "Touch": Touch, "touches": touches}
-        names |= {"touching": touching, "surface_velocity": surface_velocity}
-        return generated(source, names, function.__module__, noalias=noalias, allocates=False)
+        pieces = [(SURFACE, {"surface": surface, "item": TOUCH}) for surface in ("False", "True")]
+        return loop(function, "of_contacts", pieces, result, noalias=noalias)
+
+    return made
+
+
+def each_load(result: str = "nothing", *, noalias: bool = False) -> Callable[[Callable[..., Any]], Any]:
+    """As `each_contact`, for every point that a surface presses, by its links too. The point is a `Load`.
+
+    The force has its damping if the velocities v are among the arguments; without them u stands in their place.
+    """
+
+    def made(function: Callable[..., Any]) -> Any:
+        damped = "v" in inspect.signature(function).parameters
+        values = {"velocities": "v" if damped else "u", "with_damping": str(damped)}
+        pieces = [(SURFACE, {"surface": surface, "item": LOAD_OF_POINT, **values}) for surface in ("False", "True")]
+        of_points = loop(function, "of_loads", pieces, result, noalias=noalias)
+        pieces.append((LINKS, {"item": LOAD_BY_LINKS, **values}))
+        return by_net(rope=loop(function, "of_loads_and_links", pieces, result, noalias=noalias), grid=of_points)
 
     return made

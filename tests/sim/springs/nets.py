@@ -59,6 +59,19 @@ def touching_patch(model="axial", contact=None, *, rows=3, cols=4, **more) -> Ne
     )
 
 
+def draped(contact=None, *, damping_model="axial", **more) -> Net:
+    """A rope of 9 points on a moving sphere: links touch it in their middle, and two of them at their common end."""
+    angles = np.radians([-100.0, -75.0, -50.0, -20.0, 5.0, 30.0, 60.0, 80.0, 100.0])
+    # The third point pokes in: its neighbours are far out.
+    out = np.array([0.62, 0.60, 0.47, 0.60, 0.49, 0.5, 0.52, 0.50, 0.55])
+    net = rope(
+        9, 1.8, 0.7, 400.0, 4.0, 0.3, 9.81, sphere=(0.01, -0.02, 0.03, 0.45), contact=contact or Contact(900.0, 20.0),
+        radius=0.05, damping_model=damping_model,
+    )  # fmt: skip
+    x0 = np.stack([out * np.sin(angles), 0.02 * np.cos(3.0 * angles), out * np.cos(angles)])[:, None]
+    return dataclasses.replace(net, **{"x0": x0, "sphere_velocity": (0.3, -0.2, 0.1), "epoch": -0.1, **more})
+
+
 def hairpin(contact_damping, damping=0.0, drag=0.0, moving=()) -> Net:
     """A rope folded back over itself, nearer than its thickness."""
     x = np.zeros((3, 1, 8))

@@ -22,7 +22,7 @@ from sim.springs.stability import (
 )
 from sim.springs.state import State, advance
 from tests.naive import own_contacts, tangent
-from tests.sim.springs.nets import DAMPABLE, patch, touching_patch
+from tests.sim.springs.nets import DAMPABLE, draped, patch, touching_patch
 
 ZETAS = (0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.707, 1.0, 2.0)
 LIMITS = {  # largest stable h omega at each zeta; None: beyond it a method grows too slowly to be seen
@@ -71,6 +71,14 @@ def swung(net, seconds, name="rk4"):
 def test_tangent_products_are_the_derivatives_of_the_forces(model, law):
     # At rest the derivative of the clipped law's normal force is that of its spring and dashpot.
     net = dataclasses.replace(touching_patch(model, Contact(900.0, 6.0, 0.0, law)), sphere_velocity=(0.0, 0.0, 0.0))
+    stiffness, damping = tangent(net, net.x0)
+    assert np.abs(products(net, net.x0, STIFFNESS) - stiffness).max() < 1e-8 * np.abs(stiffness).max()
+    assert np.abs(products(net, net.x0, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
+
+
+def test_tangent_products_of_links_on_a_sphere_are_the_derivatives_of_the_forces():
+    """With the change of the place that touches, in the middle of links and at an end of two."""
+    net = draped(Contact(900.0, 6.0), sphere_velocity=(0.0, 0.0, 0.0))
     stiffness, damping = tangent(net, net.x0)
     assert np.abs(products(net, net.x0, STIFFNESS) - stiffness).max() < 1e-8 * np.abs(stiffness).max()
     assert np.abs(products(net, net.x0, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
@@ -154,6 +162,16 @@ def test_gershgorin_bounds_every_state(model):
         assert stiffest.omega <= omega
         assert most_damped.rate <= rate
     assert gershgorin(rope(200))[0] == pytest.approx(top_modes(rope(200))[0].omega, rel=1e-3)
+
+
+def test_gershgorin_counts_both_links_of_a_point_that_pokes_into_a_sphere():
+    net = rope(3, 0.4, drag=0.0, sphere=(-0.2, 0.0, -0.49, 0.5), contact=Contact(1e5, 900.0), damping_model="axial")
+    x = net.x0.copy()
+    x[2, 0, 1] = -0.1
+    stiffest, most_damped, *_ = top_modes(net, x)
+    omega, rate = gershgorin(net, x)
+    assert 0.95 * omega < stiffest.omega <= omega
+    assert 0.95 * rate < most_damped.rate <= rate
 
 
 @pytest.mark.parametrize(("case", "name"), [(case, name) for case in STIFFEST for name in STIFFEST[case]])

@@ -64,8 +64,39 @@ def set_point_blocks(x, v, t, g, p, points):
     add_blocks(x, v, t, g, p, points)
 
 
+add_pair_blocks = each("pair_blocks", "x, v, t, g, p, pairs", "none", allocates=False)
+
+
+@kernel(allocates=False)
+def set_pair_blocks(x, v, t, g, p, pairs):
+    """g D + g^2 K between the ends of a rope's links that no link's own block holds: that of their contact."""
+    if p.links_touch:
+        for j in range(pairs.shape[0]):
+            pairs[j] = 0.0
+        add_pair_blocks(x, v, t, g, p, pairs)
+
+
+@kernel(noalias=True, inline=True)
+def add_pairs(p, pairs, beside):
+    """Add the blocks of `set_pair_blocks` between free points to those of a rope."""
+    n = p.cols
+    for j in range(n - 1):
+        if p.inverse_masses[j] > 0.0 and p.inverse_masses[j + 1] > 0.0:
+            xx, xy, xz = pairs[j], pairs[n + j], pairs[2 * n + j]
+            yy, yz, zz = pairs[3 * n + j], pairs[4 * n + j], pairs[5 * n + j]
+            beside[j, 0] += xx
+            beside[j, 1] += xy
+            beside[j, 2] += xz
+            beside[j, 3] += xy
+            beside[j, 4] += yy
+            beside[j, 5] += yz
+            beside[j, 6] += xz
+            beside[j, 7] += yz
+            beside[j, 8] += zz
+
+
 @kernel(noalias=True, allocates=False)
-def set_rope_blocks(p, points, links, numbers, diagonal, beside):
+def set_rope_blocks(p, points, links, pairs, numbers, diagonal, beside):
     """The matrix of a rope, row by row; rows of pinned points hold them still."""
     n = p.cols
     left = numbers - 3
@@ -83,6 +114,8 @@ def set_rope_blocks(p, points, links, numbers, diagonal, beside):
                 diagonal[j, 3 * e + m] += s
                 diagonal[j + 1, 3 * e + m] += s
                 beside[j, 3 * e + m] = -s if free else 0.0
+    if p.links_touch:
+        add_pairs(p, pairs, beside)
     for j in range(n):
         if p.inverse_masses[j] == 0.0:
             for e in range(9):

@@ -68,7 +68,7 @@ forget_factors = by_net(rope=kernel(lambda solver, p: None, inline=True), grid=f
 def correct_rope(p, work):
     """Set work.u, from the blocks and the residual in work.r, which it overwrites."""
     n, solver = p.cols, work.solver
-    set_rope_blocks(p, work.points, work.links, solver.numbers, solver.diagonal, solver.beside)
+    set_rope_blocks(p, work.points, work.links, work.pairs, solver.numbers, solver.diagonal, solver.beside)
     u = work.u.reshape(n, 3)
     for e in range(3):
         for j in range(n):

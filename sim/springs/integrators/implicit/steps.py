@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import add_power
 from sim.springs.forces.friction import FIXED, NOTED
-from sim.springs.integrators.implicit.blocks import set_link_blocks, set_point_blocks
+from sim.springs.integrators.implicit.blocks import set_link_blocks, set_pair_blocks, set_point_blocks
 from sim.springs.integrators.implicit.conservation import (
     change_norm,
     conserve_momentum,
@@ -87,6 +87,7 @@ class SolverWork(NamedTuple):
     f: NDArray[np.float64]  # scratch of `accelerate`
     points: NDArray[np.float64]  # (6 rows cols,) blocks of the particles
     links: NDArray[np.float64]  # (families numbers rows cols,) blocks of the links
+    pairs: NDArray[np.float64]  # (6 rows cols,) further blocks of a rope's links, where these touch
     r: NDArray[np.float64]  # (3 rows cols,) the residual
     u: NDArray[np.float64]  # (3 rows cols,) its correction
     solver: Any
@@ -102,6 +103,7 @@ def make_work(p, mean):
         make_scratch(p),
         np.zeros(6 * size),
         np.zeros(solver.numbers * size * p.offsets.shape[0]),
+        np.zeros(6 * size if p.links_touch else 0),
         np.zeros(3 * size),
         np.zeros(3 * size),
         solver,
@@ -138,6 +140,7 @@ def set_residual(x0, v0, g, t, p, x, v, work):
 def set_blocks(x0, g, t, p, x, v, work):
     """The blocks of the matrix about x, v."""
     set_point_blocks(x, v, t, g, p, work.points)
+    set_pair_blocks(x, v, t, g, p, work.pairs)
     if work.mean:
         set_mean_blocks(x0, x, g, p, work.links)
     else:

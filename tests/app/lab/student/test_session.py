@@ -35,6 +35,7 @@ from app.panel.workbook.code_panel import (
     difference_chart,
     function_lines,
     headline,
+    net_texts,
 )
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene, rows_of
@@ -224,6 +225,12 @@ def test_floor_sphere_and_mouse_are_those_of_the_program(right: Session, law: st
     assert np.abs(scene.state.x - start).max() > 0.05
     # A step of the student has the moving sphere where it is in the middle of the step, not at each stage.
     assert right.rope.report.difference < 2e-5
+    # The tasks know points only, so that the program's links do not touch either; the panel says so.
+    assert not scene.net.links_touch
+    said = any(
+        "only the points of both ropes touch" in text for text in net_texts(right.state, right.rope.report, "rope")
+    )
+    assert said is (law == "clipped")
 
 
 def test_a_wrong_function_leaves_the_program_s_rope_alone(right: Session) -> None:

@@ -94,6 +94,25 @@ def test_the_root_follows_where_it_is_placed() -> None:
     assert (scene.state.v[:, 0, 0] == 0).all()
 
 
+def test_a_link_lies_on_a_small_sphere_within_a_fifth_of_its_tube() -> None:
+    """Of 0.22 m, on a sphere of 0.05 m: points alone would pass on both sides of it."""
+    params = RopeParams(sphere=True, sphere_radius=0.05, contact_stiffness=2e4, time_step=1 / 2000)
+    scene = Rope(params)
+    scene.handles.sphere.place_at((-1.0, 0.0, 3.0 - 0.05 - ROPE_RADIUS))  # below the middle of the fifth link
+    scene.change_forces(params)
+    assert scene.net.links_touch
+    depths = []
+    for _ in range(60):
+        scene.advance(10)
+        points = scene.frame().points.astype(float)
+        line = points[4] + np.linspace(0.0, 1.0, 400)[:, None] * (points[5] - points[4])
+        gap = np.linalg.norm(line - scene.handles.sphere.position, axis=1).min() - 0.05
+        depths.append(1.0 - gap / ROPE_RADIUS)  # of the tube's radius
+    assert points[-1, 2] < 2.7  # the rest falls
+    assert points[4:6, 2].max() > 2.9
+    assert 0.0 < max(depths) < 0.2
+
+
 def test_a_reset_puts_root_and_sphere_back() -> None:
     scene = Rope(RopeParams(sphere=True))
     scene.handle(Place("root", (0.0, 0.0, -90.0)))

@@ -135,7 +135,8 @@ def wrapped(mu, nodes, pull):
     down = spacing * np.arange(leg, 0, -1) - spacing / 2
     z = np.concatenate([-down, radius * np.sin(around), -down[::-1]])
     points = len(x)
-    net = rope(points, spacing * (points - 1), 0.002, 20_000.0, 1.0, 0.0, 0.0, contact=Contact(2e5, 5.0, mu))
+    contact = Contact(2e5, 5.0, mu, links=False)
+    net = rope(points, spacing * (points - 1), 0.002, 20_000.0, 1.0, 0.0, 0.0, contact=contact)
     speed = 0.1
     start = (float(x[0]), 0.0, float(z[0]))
     path = PinPath(0.0, (start, (0.0, 0.0, -speed), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))

@@ -10,7 +10,7 @@ from sim.springs.damping import damp_motion, damp_others, make_decay
 from sim.springs.points.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.state import energy
 from tests import naive
-from tests.sim.springs.nets import KNIGHT, hairpin, patch, touching_patch
+from tests.sim.springs.nets import KNIGHT, draped, hairpin, patch, touching_patch
 
 
 @kernel
@@ -68,6 +68,18 @@ def test_a_net_s_forces_are_the_formulas(shape, model, law):
             agrees(net, x, 30.0 * v)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("floor", [None, 0.1])
+def test_forces_on_links_that_touch_the_sphere_are_the_formulas(floor, friction):
+    net = draped(Contact(900.0, 20.0, friction), floor=floor)
+    for seed in range(5):
+        x, v = shaken(net, seed)
+        places = list(naive.link_touches(net, x[:, 0].T[None], v[:, 0].T[None], 0.3))
+        assert {0.0 < s < 1.0 for *_, s, _, _, _ in places} == {False, True} or seed
+        agrees(net, x, v)
+        agrees(net, x, 30.0 * v)
+
+
 @pytest.mark.parametrize("max_force", [1.0, 1e6])
 def test_the_grab_pulls_at_most_its_cap(max_force):
     net = dataclasses.replace(rope(5), grab=Grab(0, 3, (1.0, 2.0, 3.0), 500.0, 3.0, max_force))
@@ -100,9 +112,11 @@ def test_coincident_points_are_pulled_nowhere():
 
 @pytest.mark.parametrize("reverse", [False, True])
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
-def test_split_damping_starts_as_the_damping_forces(model, reverse):
+@pytest.mark.parametrize("make", [touching_patch, draped])
+def test_split_damping_starts_as_the_damping_forces(make, model, reverse):
     """For a short time s, v changes by s times the accelerations that depend on v."""
-    net = touching_patch(model, Contact(900.0, 20.0))
+    net = make(contact=Contact(900.0, 20.0))
+    net = dataclasses.replace(net, damping_model=model)
     x, v = shaken(net)
     changes = []
     for s in (1e-5, 5e-6):
@@ -152,6 +166,12 @@ def own_power(net, x, v, t, h):
         naive.own_contacts(net, xs, vs), naive.own_contacts(net, xs, 0.0 * vs), strict=True
     ):
         pair(a, b, force, spring)
+    for a, b, s, force, spring, slip in naive.link_touches(net, xs, vs, t):
+        dissipated -= (force - spring) @ slip
+        work += force @ np.array(net.sphere_velocity)
+        for end, share in ((a, 1.0 - s), (b, s)):
+            work -= share * force @ vs[end] if end in net.pinned else 0.0
+    pressed = naive.loads(net, xs, vs, t)
     for i, j in itertools.product(*map(range, net.shape)):
         if (i, j) in net.pinned:
             continue
@@ -159,13 +179,23 @@ def own_power(net, x, v, t, h):
         for depth, normal, velocity, on_sphere in naive.surfaces(net, xs[i, j], t):
             slip = vs[i, j] - velocity
             force = naive.contact_force(net, depth, normal, slip, on_sphere)
-            force = force + naive.friction(net, net.masses[i, j], depth, normal, slip, np.zeros(3), h)
             dissipated -= (force - net.contact.stiffness * depth * normal) @ slip
+            work += force @ velocity
+        for load, velocity in pressed[i, j]:
+            slip = vs[i, j] - velocity
+            force = naive.friction(net, net.masses[i, j], load, slip, np.zeros(3), h)
+            dissipated -= force @ slip
             work += force @ velocity
         if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
             work += naive.grab_force(net.grab, xs[i, j], np.zeros(3)) @ vs[i, j]
             dissipated += net.grab.damping * vs[i, j] @ vs[i, j]
     return dissipated, work
+
+
+def drawn_along(net, col):
+    """A rope of which only this point is pinned, and moves."""
+    path = PATH._replace(coefficients=(tuple(net.x0[:, 0, col].tolist()), *PATH.coefficients[1:]))
+    return dataclasses.replace(net, pinned=frozenset({(0, col)}), pin_paths=(((0, col), path),))
 
 
 PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, -0.2, 0.7), (0.0,) * 3, (0.0,) * 3))
@@ -176,6 +206,8 @@ POWERED = {
         for model in ("isotropic", "axial")
         for law in ("clipped", "lab")
     },
+    "links on a sphere": drawn_along(draped(Contact(900.0, 6.0, 0.3)), 0),
+    "pin in a sphere": drawn_along(draped(Contact(900.0, 6.0), damping_model="isotropic"), 4),
     "hairpin": SHAKEN,
     "hairpin, axial": dataclasses.replace(SHAKEN, damping_model="axial"),
 }
@@ -214,6 +246,10 @@ def test_the_stored_energies_are_the_formulas():
         )
         contact = sum(
             0.5 * net.contact.stiffness * depth**2 for p in free for depth, *_ in naive.surfaces(net, xs[p], 0.0)
+        )
+        contact += sum(
+            0.5 * (spring @ spring) / net.contact.stiffness
+            for *_, spring, _ in naive.link_touches(net, xs, 0.0 * xs, 0.0)
         )
         contact += sum(
             0.5 * (force @ force) / net.contact.stiffness for _, _, force in naive.own_contacts(net, xs, 0.0 * xs)

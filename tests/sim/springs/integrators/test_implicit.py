@@ -64,7 +64,7 @@ def test_the_blocks_of_a_rope_s_points_are_all_of_their_matrix():
     work = steps.make_work(p, False)
     points = np.random.default_rng(3).standard_normal((6, n))
     diagonal, beside = np.full((n, 9), np.nan), np.full((n, 9), np.nan)
-    blocks.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.solver.numbers, diagonal, beside)
+    blocks.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.pairs, work.solver.numbers, diagonal, beside)
     xx, xy, xz, yy, yz, zz = points
     expected = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
     expected[0] = p.mass[0] * np.eye(3)  # the root

@@ -418,7 +418,7 @@ def yaw_by_twist(moment: np.ndarray, k: np.ndarray) -> float:
     """The factor of kx ky in the yaw moment (n,) of waves of k (n, 2) [rad/m]; 0 where no wave turns the hull."""
     product = k[:, 0] * k[:, 1]
     square = float(product @ product)
-    return float(product @ moment.real) / square if square > 0.0 else 0.0
+    return float(product @ np.real(moment)) / square if square > 0.0 else 0.0
 
 
 def long_wave_force(plane: PlaneForce, cut: Submerged, added: np.ndarray, twist: float) -> LongWaveForce:

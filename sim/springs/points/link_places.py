@@ -14,7 +14,7 @@ touching = kernel(inline=True)(point_laws.touching)
 contact_force = kernel(inline=True)(point_laws.contact_force)
 
 
-class Place(NamedTuple):
+class LinkPlace(NamedTuple):
     """The place of a link that is nearest to the sphere's centre."""
 
     a: int  # the link's first point; its second is the next one
@@ -59,14 +59,14 @@ def links_near(x, t, p):
 
 @kernel(inline=True)
 def place_on_link(x, t, p, a):
-    """The `Place` of the link from point a of a rope to the next."""
+    """The `LinkPlace` of the link from point a of a rope to the next."""
     n, s = p.cols, t - p.epoch
     rx, ry, rz = span(x, n, a, a + 1)
     ax, ay, az = x[a], x[n + a], x[2 * n + a]
     dx, dy, dz = p.sx + s * p.svx - ax, p.sy + s * p.svy - ay, p.sz + s * p.svz - az
     part = min(1.0, max(0.0, (dx * rx + dy * ry + dz * rz) / (rx * rx + ry * ry + rz * rz + TINY)))
     depth, nx, ny, nz = touching(ax + part * rx, ay + part * ry, az + part * rz, t, p, True)
-    return Place(a, part, depth, nx, ny, nz)
+    return LinkPlace(a, part, depth, nx, ny, nz)
 
 
 @kernel(inline=True)

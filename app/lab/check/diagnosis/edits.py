@@ -68,7 +68,7 @@ class EditWords(NamedTuple):
 
     @property
     def is_clear(self) -> bool:
-        """True if a sentence can name what changes: each text is one line, or the cause is complete."""
+        """True if a sentence can name the change: each text is one line, or the cause is complete."""
         says_all = self.cause.endswith("it is right.")
         return says_all or not any("\n" in text for one in self.shown for text in (one.before, one.after))
 

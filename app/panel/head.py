@@ -96,7 +96,7 @@ class Head:
             preset = self.visited if self.visited in kind.presets else ""
             self.query = write_query(kind, settings.params_of(self.visited), preset)
         # For js/sharing/visited.js and js/panel/acts.js.
-        words = settings.history.undo_words, settings.history.redo_words
+        words = settings.undo_words, settings.redo_words
         acts = '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}"></span>'
         self.here.content = str(fill(acts, self.query, *words))
 

@@ -75,4 +75,4 @@ class GrabLine:
             self.words.visible = is_at_limit
             if is_at_limit:
                 self.words.text = f"{number(force)} N: the largest mouse force"
-                self.words.position = tuple(float(c) for c in ends[1])
+                self.words.position = np.asarray(ends[1], float)

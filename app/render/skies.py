@@ -4,12 +4,19 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.render.cameras import set_clipping
 from app.render.injection import injector_of
 from app.render.material import HAZE_DISTANCE, RGB, Material
 
+STAR_COUNT = 700
+STAR_DISTANCE = 6000.0  # [m]
+STAR_SIZE = 0.0022  # [rad]
+LOWEST_STAR, CLEAR_AIR = 4.0, 25.0  # [deg] of elevation: of the lowest star, and from which the haze dims none
+FAINTEST = 0.12  # brightness of the faintest star over that of the brightest
 CAMERA_RANGE = 20_000.0  # [m] at which the camera's view ends; viser's own 1000 m would cut the horizon off
 
 
@@ -141,6 +148,39 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
         sky_low=photo.low,
         sky_high=photo.high,
     )
+
+
+class Stars:
+    """The stars of a clear night, always the same."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.server = server
+        self.handle: viser.PointCloudHandle | None = None  # made in the first night
+
+    def show(self, shown: bool) -> None:
+        """Draw them over the whole sky, or hide them."""
+        if shown and self.handle is None:
+            points, colours = star_field()
+            self.handle = self.server.scene.add_point_cloud(
+                "/stars", points, colours, point_size=STAR_SIZE * STAR_DISTANCE, point_shape="circle",
+                precision="float32", point_shading="flat",
+            )  # fmt: skip
+        if self.handle is not None and self.handle.visible != shown:
+            self.handle.visible = shown
+
+
+def star_field() -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Points (n, 3) [m] on the upper half of a sphere, and colours (n, 3), sRGB; few are bright, haze dims low ones."""
+    rng = np.random.default_rng(1)
+    azimuth = 2.0 * np.pi * rng.random(STAR_COUNT)
+    height = rng.uniform(math.sin(math.radians(LOWEST_STAR)), 1.0, STAR_COUNT)  # as many in equal parts of the sky
+    level = np.sqrt(1.0 - height**2)
+    directions = np.column_stack([level * np.cos(azimuth), level * np.sin(azimuth), height])
+    brightness = FAINTEST + (1.0 - FAINTEST) * rng.random(STAR_COUNT) ** 4
+    brightness *= np.minimum(1.0, np.arcsin(height) / math.radians(CLEAR_AIR))
+    warmth = rng.uniform(-0.1, 0.1, STAR_COUNT)
+    colours = 255.0 * brightness[:, None] * np.column_stack([0.9 + warmth, np.full(STAR_COUNT, 0.92), 0.9 - warmth])
+    return (STAR_DISTANCE * directions).astype(np.float32), np.rint(colours).astype(np.uint8)
 
 
 def drawn_elevation(photo: Photograph) -> float:

@@ -16,7 +16,7 @@ from app.render.follow_camera import FollowCamera
 from app.render.handles.dragging import GrabLine, drag
 from app.render.markup.html import bold, fill
 from app.render.material import Material
-from app.render.skies import set_sky
+from app.render.skies import Stars, set_sky
 from app.render.water import DrawnWater
 from app.scenes.contract import Pieces, SceneView
 from app.scenes.radial_sea.cutaway import DIRECTION
@@ -78,6 +78,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         self.flames: Flames | None = None
         self.walls: Walls | None = None
         self.grab_lines: list[GrabLine] = []
+        self.stars = Stars(server)
         self.stains = Stains(server)
 
     def first_view(self, params: RadialSeaParams) -> tuple[Vector, Vector]:
@@ -93,6 +94,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         if self.sky != p.sky:
             self.sky = p.sky
             self.light = set_sky(self.server, p.sky, SUN_BEARING)
+            self.stars.show(p.sky == "night")
             self.place_lamps()
         self.show_sea(frame)
         self.show_cutaway(frame)

@@ -18,7 +18,7 @@ from app.render.handles.viser_inside import set_arrays
 from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball
-from app.render.skies import set_sky
+from app.render.skies import Stars, set_sky
 from app.render.staff import WaveStaff, upright
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
@@ -112,6 +112,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
         self.sky_material = self.material = Material()
+        self.stars = Stars(server)
         self.made_of: tuple[object, ...] = ()  # arguments of the material
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
@@ -135,6 +136,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         made_of = p, frame.slope_resolved, self.sky
         if made_of != self.made_of:
             self.made_of = made_of
+            self.stars.show(p.sky == "night" and p.clouds < OVERCAST_FROM)
             material = self.material_of(frame)
         else:
             material = self.material

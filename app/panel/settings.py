@@ -257,16 +257,16 @@ class SceneSettings:
 
     @property
     def undo_words(self) -> str:
-        """What an undo takes back, and to what; "" without an act."""
+        """The act that an undo takes back, and the settings that come back; "" without an act."""
         return self.words_to(self.history.last, "back to")
 
     @property
     def redo_words(self) -> str:
-        """What a redo repeats, and up to what; "" without an act."""
+        """The act that a redo repeats, and the settings that follow; "" without an act."""
         return self.words_to(self.history.next, "forward to")
 
     def words_to(self, settings: EarlierSettings | None, way: str) -> str:
-        """The act between the present settings and others of the history, and what these are; "" without others."""
+        """The act between the present settings and others of the history, and the name of these; "" without others."""
         if settings is None:
             return ""
         if settings.scene != self.kind.name:

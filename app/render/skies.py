@@ -12,6 +12,7 @@ from app.render.cameras import set_clipping
 from app.render.injection import injector_of
 from app.render.material import HAZE_DISTANCE, RGB, Material
 
+NIGHT = "night"
 STAR_COUNT = 700
 STAR_DISTANCE = 6000.0  # [m]
 STAR_SIZE = 0.0022  # [rad]
@@ -91,7 +92,7 @@ SKIES = {
         tint=(1.0, 0.86, 0.9),
         horizon=(232, 190, 196),
     ),
-    "night": Photograph(
+    NIGHT: Photograph(
         sun_column=0.36,
         sun_height=25.0,
         sun_color=(0.75, 0.85, 1.0),
@@ -150,23 +151,30 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
     )
 
 
-class Stars:
-    """The stars of a clear night, always the same."""
+class Sky:
+    """The sky over a sea, with stars in clear nights, which are always the same."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server
-        self.handle: viser.PointCloudHandle | None = None  # made in the first night
+        self.shown: tuple[str, float] | None = None  # arguments of the last `set`
+        self.stars: viser.PointCloudHandle | None = None  # made in the first night
 
-    def show(self, shown: bool) -> None:
-        """Draw them over the whole sky, or hide them."""
-        if shown and self.handle is None:
+    def set(self, name: str, azimuth: float) -> Material:
+        """Set the sky as `set_sky` does."""
+        self.shown = name, azimuth
+        return set_sky(self.server, name, azimuth)
+
+    def show_stars(self, *, is_clear: bool) -> None:
+        """Draw stars over the whole sky at night, unless clouds hide them."""
+        shown = is_clear and self.shown is not None and self.shown[0] == NIGHT
+        if shown and self.stars is None:
             points, colours = star_field()
-            self.handle = self.server.scene.add_point_cloud(
+            self.stars = self.server.scene.add_point_cloud(
                 "/stars", points, colours, point_size=STAR_SIZE * STAR_DISTANCE, point_shape="circle",
                 precision="float32", point_shading="flat",
             )  # fmt: skip
-        if self.handle is not None and self.handle.visible != shown:
-            self.handle.visible = shown
+        if self.stars is not None and self.stars.visible != shown:
+            self.stars.visible = shown
 
 
 def star_field() -> tuple[NDArray[np.float32], NDArray[np.uint8]]:

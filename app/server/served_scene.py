@@ -11,7 +11,7 @@ import viser
 
 from app.lab.course.workbook import Workbook
 from app.messages import BaseParams, Command, Halt
-from app.panel.history import History, SceneRequest
+from app.panel.history import EarlierSettings, History
 from app.panel.panel import Panel
 from app.panel.recording.recorder import RecordedFrame
 from app.panel.settings import SceneSettings
@@ -29,6 +29,7 @@ from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
 from app.server.placing import CameraPlacing
 from app.server.preparation import Preparation
 from app.server.replay_file import replay_html
+from app.server.requests import SceneRequests
 from app.server.web.guard import MessageFilter
 from app.server.web.transport import Transport
 
@@ -53,14 +54,11 @@ class SceneHost(Protocol):
     workbook: Workbook | None
     session: "Session | None"
     first_params: dict[str, BaseParams]
+    requests: SceneRequests
 
     @property
     def beside(self) -> ComparisonCalls | None:
         """Shows other set-ups beside this lab; None if this one is beside another."""
-        ...
-
-    def request(self, request: SceneRequest) -> None:
-        """Request a scene."""
         ...
 
     def visitors(self) -> list[int]:
@@ -93,12 +91,12 @@ class ServedScene:
         *,
         paused: bool,
         history: History,
-        preset: str,
+        earlier: EarlierSettings | None,
     ) -> None:
         """viewer: the server and the parts common to all scenes. `start` runs the threads.
 
-        scene: has the wanted parameters, or others if it cannot begin with those. commands: for it. history, preset:
-        see `SceneSettings`.
+        scene: has the wanted parameters, or others if it cannot begin with those. commands: for it. history: see
+        `SceneSettings`. earlier: see `SceneRequest`.
         """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: RecordedFrame | None = None  # the shown frame of the recording
@@ -111,7 +109,14 @@ class ServedScene:
         self.view = view_named(kind.name)(self.server, lambda command: self.settings.drag(command))
         self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(
-            self.server, kind, params, self.commands.put, viewer.request, viewer.first_params, history, preset
+            self.server,
+            kind,
+            params,
+            self.commands.put,
+            viewer.requests.put,
+            viewer.first_params,
+            history,
+            "" if earlier is None else earlier.preset,
         )
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,

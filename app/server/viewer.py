@@ -159,13 +159,11 @@ class Viewer:
         # Before the old panel is removed: viser's page takes the updates of a frame after its removals, and says in the
         # browser's console that there is nothing to update. Meanwhile it has taken the last updates.
         scene = self.make_scene(kind, params, commands.put)
-        last = None if self.current is None else self.current.settings
-        history = History() if last is None else last.history_of_next(kind.name, earlier)
-        preset = "" if earlier is None else earlier.preset
+        history = history_after(self.current, kind.name, earlier)
         reset_page(self.server)
         opening = cover(self.server, f"Opening {kind.title} …")
         self.current = current = ServedScene(
-            self, kind, params, scene, commands, paused=paused, history=history, preset=preset
+            self, kind, params, scene, commands, paused=paused, history=history, earlier=earlier
         )
         opening.remove()
         comparison = self.comparison
@@ -213,11 +211,7 @@ class Viewer:
 
     def want(self, name: str, params: BaseParams | None = None) -> None:
         """Request a scene; it is opened on a separate thread."""
-        self.request(SceneRequest(name, params))
-
-    def request(self, request: SceneRequest) -> None:
-        """See `want`."""
-        self.requests.put(request)
+        self.requests.put(SceneRequest(name, params))
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers request; of several waiting only the last."""
@@ -352,3 +346,8 @@ class Viewer:
         self.want("")
         with quiet():
             self.server.stop()
+
+
+def history_after(last: ServedScene | None, scene: str, earlier: EarlierSettings | None) -> History:
+    """The history of a scene that replaces the last one, if there was one. earlier: see `SceneRequest`."""
+    return History() if last is None else last.settings.history_of_next(scene, earlier)

@@ -18,7 +18,7 @@ from app.render.handles.viser_inside import set_arrays
 from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball
-from app.render.skies import Stars, set_sky
+from app.render.skies import Sky
 from app.render.staff import WaveStaff, upright
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
@@ -110,9 +110,8 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.marked: Highest | None = None  # crest that the mark is on
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
         self.view = DEFAULTS.view
-        self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
+        self.sky = Sky(server)
         self.sky_material = self.material = Material()
-        self.stars = Stars(server)
         self.made_of: tuple[object, ...] = ()  # arguments of the material
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
@@ -130,13 +129,13 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
     def show(self, frame: SeaFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         p = frame.params
-        if self.sky != (p.sky, p.sun):
-            self.sky = p.sky, p.sun
-            self.sky_material = set_sky(self.server, p.sky, math.radians(p.sun))
-        made_of = p, frame.slope_resolved, self.sky
+        sky = p.sky, math.radians(p.sun)
+        if self.sky.shown != sky:
+            self.sky_material = self.sky.set(*sky)
+        made_of = p, frame.slope_resolved
         if made_of != self.made_of:
             self.made_of = made_of
-            self.stars.show(p.sky == "night" and p.clouds < OVERCAST_FROM)
+            self.sky.show_stars(is_clear=p.clouds < OVERCAST_FROM)
             material = self.material_of(frame)
         else:
             material = self.material

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from app.render.skies import CAMERA_RANGE, LOWEST_STAR, STAR_COUNT, STAR_DISTANCE, Stars, star_field
+from app.render.skies import CAMERA_RANGE, LOWEST_STAR, NIGHT, STAR_COUNT, STAR_DISTANCE, Sky, star_field
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import OVERCAST_FROM, SquareSeaView
@@ -23,16 +23,20 @@ def test_stars_are_above_the_horizon_on_all_sides_and_within_the_picture() -> No
 
 
 def test_stars_are_made_once_and_hidden_by_day(server: Any) -> None:
-    stars = Stars(server)
-    stars.show(False)
-    assert stars.handle is None
-    stars.show(True)
-    handle = stars.handle
-    assert handle is not None
-    for shown in (False, True):
-        stars.show(shown)
-        assert stars.handle is handle
-        assert handle.visible is shown
+    sky = Sky(server)
+    sky.show_stars(is_clear=True)
+    sky.set("park", 0.0)
+    sky.show_stars(is_clear=True)
+    assert sky.stars is None
+    sky.set(NIGHT, 0.0)
+    sky.show_stars(is_clear=True)
+    stars = sky.stars
+    assert stars is not None
+    for name in ("dawn", NIGHT):
+        sky.set(name, 0.0)
+        sky.show_stars(is_clear=True)
+        assert sky.stars is stars
+        assert stars.visible is (name == NIGHT)
 
 
 def test_clouds_hide_the_stars_of_a_sea(server: Any) -> None:
@@ -44,4 +48,4 @@ def test_clouds_hide_the_stars_of_a_sea(server: Any) -> None:
         ("park", 0.2, False),
     ):
         view.show(SquareSeaScene(SquareSeaParams(size="64", mesh="32", sky=sky, clouds=clouds)).frame())
-        assert (view.stars.handle is not None and view.stars.handle.visible) is shown
+        assert (view.sky.stars is not None and view.sky.stars.visible) is shown

@@ -95,10 +95,13 @@ class Head:
             kind, self.visited = settings.kind, settings.loaded
             preset = self.visited if self.visited in kind.presets else ""
             self.query = write_query(kind, settings.params_of(self.visited), preset)
-        # For js/sharing/visited.js and js/panel/acts.js.
-        words = settings.history.undo_words, settings.history.redo_words
-        acts = '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}"></span>'
-        self.here.content = str(fill(acts, self.query, *words))
+        # For js/sharing/visited.js, js/panel/acts.js and js/page/veil.js.
+        awaited = "" if settings.placing is None else settings.placing.act
+        told = (
+            '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}" '
+            'data-springtide-awaited="{}"></span>'
+        )
+        self.here.content = str(fill(told, self.query, settings.undo_words, settings.redo_words, awaited))
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are out of date."""
@@ -106,7 +109,8 @@ class Head:
         if running != self.running:
             self.running = running
             self.buttons.options = button_names(running=running)
-        told, self.told = self.told, (running, snapshot.status.halted, snapshot.status.outdated, visitors)
+        status = snapshot.status
+        told, self.told = self.told, (running, status.halted, status.outdated, status.run.placed, visitors)
         return self.told != told
 
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
@@ -176,10 +180,11 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1, *, 
             slower = coloured("slower than set", WARNING_COLOUR)
             pace = fill("{}: ×{:.2f} instead of ×{:g}", slower, s.actual_speed, s.speed * s.pace)
     return fill(
-        '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'
+        '<div class="springtide-panel" data-state="{}" data-snapshot="{}" data-placed="{}" title="{}">'
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
         "running" if s.running else "paused",
         snapshot.serial,  # so that a repeated text is seen to be new
+        s.run.placed,
         f"Simulated time over real time, at {s.frame_rate:.0f} frames a second" if s.running else "",
         state,
         s.time,

@@ -1,4 +1,7 @@
-"""Earlier settings, which undo restores, with the acts that began their runs; and those that redo restores."""
+"""Earlier settings, which undo restores, with the acts that began their runs; and those that redo restores.
+
+The history goes through all scenes of a lab: another scene is an act, too.
+"""
 
 import collections
 import itertools
@@ -14,14 +17,24 @@ SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slide
 
 
 class EarlierSettings(NamedTuple):
-    """All parameters, their preset, and the state of the screen."""
+    """All parameters of a scene, their preset, and the state of the screen."""
 
+    scene: str
     params: BaseParams
     preset: str
     act: int = 1  # number of the act that began their run, which `History.note` sets
     runs: bool = False  # that act has the lab run, as a preset does; set by `History.note` too
     cameras: tuple[ClientCamera, ...] = ()  # of all browsers, before a change that moves them
     words: str = ""  # the act between them and the later settings
+
+
+class SceneRequest(NamedTuple):
+    """A scene to open."""
+
+    scene: str
+    params: BaseParams | None = None  # from a task, a link or the history
+    cameras: tuple[ClientCamera, ...] = ()  # of single browsers
+    earlier: EarlierSettings | None = None  # the settings of an undo or a redo
 
 
 class History:
@@ -67,14 +80,34 @@ class History:
             self.changed_at = time.monotonic()
 
     @property
-    def undo_words(self) -> str:
-        """The act that an undo takes back; "" without one."""
-        return self.settings[-1].words if self.settings else ""
+    def last(self) -> EarlierSettings | None:
+        """The settings that an undo restores."""
+        return self.settings[-1] if self.settings else None
 
     @property
-    def redo_words(self) -> str:
-        """The act that a redo repeats; "" without one."""
-        return self.undone[-1].words if self.undone else ""
+    def next(self) -> EarlierSettings | None:
+        """The settings that a redo restores."""
+        return self.undone[-1] if self.undone else None
+
+    def leads_to(self, settings: EarlierSettings | None) -> bool:
+        """True if these are the settings of the next undo or redo."""
+        return settings is not None and (settings is self.last or settings is self.next)
+
+    def for_other_scene(self, now: EarlierSettings, earlier: EarlierSettings | None) -> "History":
+        """A copy that leads on to another scene; this one stays with the scene that is left.
+
+        now: the settings that are left. earlier: those to restore, if the scene is opened by an undo or a redo.
+        """
+        other = History()
+        other.act, other.runs, other.acts = self.act, self.runs, self.acts
+        other.settings, other.undone = self.settings.copy(), self.undone.copy()
+        if not other.leads_to(earlier):
+            other.note(now, begins=True, runs=True)
+        elif earlier is other.last:
+            other.take_last(now)
+        else:
+            other.take_next(now)
+        return other
 
     def take_last(self, now: EarlierSettings) -> EarlierSettings | None:
         """Settings before the last act in the history, or None. Their run is the present one.

@@ -7,22 +7,22 @@ from typing import NamedTuple, TypeAlias
 
 import viser
 
+from app.formats.formatting import with_unit
 from app.lab.course import task
 from app.messages import BaseParams, Checkpoint, Command, GoOn, GrabTo, Place, Release, Reset, Take
-from app.panel.history import EarlierSettings, History
+from app.panel.history import EarlierSettings, History, SceneRequest
 from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
-from sim.parameters import changed_names, clamp_value, effect_of_change, in_words, parameters_of
+from sim.parameters import Parameter, Value, changed_names, clamp_value, effect_of_change, in_words, parameters_of
 
 NO_PARAMS: Mapping[str, BaseParams] = MappingProxyType({})
 CAMERA = "camera"  # a thing that a view places, not a person
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 
-# Takes a scene to show, optional parameters, and an optional camera for one browser.
-OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
+OpenScene: TypeAlias = Callable[[SceneRequest], None]
 
 
 class Placing(NamedTuple):
@@ -47,19 +47,22 @@ class SceneSettings:
         kind: AnyKind,
         params: BaseParams,
         post: PostCommand,
-        open_scene: OpenScene = lambda name, params, camera: None,
+        open_scene: OpenScene = lambda request: None,
         first_params: Mapping[str, BaseParams] = NO_PARAMS,
+        history: History | None = None,
+        preset: str = "",
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes another scene to show. Both return at once.
 
-        first_params: by scene, with the files that the lab has for other scenes.
+        first_params: by scene, with the files that the lab has for other scenes. history: of the lab before this scene;
+        None: the scene is its first one. preset: of the parameters, if it is known.
         """
         self.server, self.kind, self.post, self.open_scene = server, kind, post, open_scene
         self.params, self.first_params = params, first_params
         self.own = own_presets(kind)  # name in the list -> the user's set-up
-        # Name of the last preset loaded; at first the one nearest to the parameters.
-        self.loaded = self.nearest_preset(params)
-        self.history = History()
+        # Name of the last preset loaded; at first the one nearest to the parameters, if it is not known.
+        self.loaded = preset if preset in self.presets else self.nearest_preset(params)
+        self.history = history or History()
         self.pulling: set[int] = set()  # browsers that drag a point
         self.is_open = True  # False once another scene replaces it
         self.placing: Placing | None = None  # for the viewer; the last one counts
@@ -156,13 +159,13 @@ class SceneSettings:
         camera = None if setup.camera is None or client is None else ClientCamera(client, *setup.camera)
         params = self.params_of_setup(setup)
         if setup.scene != self.kind.name:
-            self.open_scene(setup.scene, params, camera)
+            self.open_scene(SceneRequest(setup.scene, params, () if camera is None else (camera,)))
             return
         self.load_params(params, setup.preset or next(iter(self.kind.presets)), () if camera is None else (camera,))
 
     def open_first_view_of(self, scene: str) -> None:
         """Show another scene in its first view."""
-        self.open_scene(scene, None, None)
+        self.open_scene(SceneRequest(scene))
 
     def resume(self, params: BaseParams, state: Checkpoint) -> None:
         """Resume the scene from a checkpoint, with its parameters."""
@@ -199,22 +202,35 @@ class SceneSettings:
 
     def undo(self) -> None:
         """Restore the settings before the last act, and their run if that act began another."""
-        last = self.history.settings
-        self.restore(self.history.act, self.history.take_last(self.now_before(last[-1] if last else None)))
+        self.go_to(self.history.last, self.history.take_last)
 
     def redo(self) -> None:
         """Restore the settings after the act that was undone last, and their run as it was left."""
-        undone = self.history.undone
-        self.restore(self.history.act, self.history.take_next(self.now_before(undone[-1] if undone else None)))
+        self.go_to(self.history.next, self.history.take_next)
 
-    def now_before(self, settings: EarlierSettings | None) -> EarlierSettings:
-        """The present settings before others are restored; with the cameras if these will be placed."""
-        return self.now("", client_cameras(self.server) if settings is not None and settings.cameras else ())
+    def go_to(
+        self, settings: EarlierSettings | None, take: Callable[[EarlierSettings], EarlierSettings | None]
+    ) -> None:
+        """Restore settings of the history, if there are any. take: takes them out, given the present ones.
 
-    def restore(self, act: int, settings: EarlierSettings | None) -> None:
-        """Show settings from the history, if there are any. act: of the present run."""
+        Those of another scene are taken out once it is opened.
+        """
         if settings is None:
             return
+        if settings.scene != self.kind.name:
+            self.open_scene(SceneRequest(settings.scene, settings.params, settings.cameras, settings))
+            return
+        act = self.history.act
+        take(self.now("", client_cameras(self.server) if settings.cameras else ()))
+        self.restore(act, settings)
+
+    def history_of_next(self, scene: str, earlier: EarlierSettings | None) -> History:
+        """The history of the scene that replaces this one. earlier: see `SceneRequest`."""
+        now = self.now(f"scene {in_words(scene)}", client_cameras(self.server))
+        return self.history.for_other_scene(now, earlier)
+
+    def restore(self, act: int, settings: EarlierSettings) -> None:
+        """Show settings from the history. act: of the present run."""
         self.pulling.clear()  # a point that is still held begins another drag
         known = settings.preset in self.presets  # a set-up of the user may have been removed
         back = settings.act != act
@@ -237,7 +253,32 @@ class SceneSettings:
 
         words: the act that is about to change them. cameras: of all browsers, if they are about to be placed.
         """
-        return EarlierSettings(self.params, self.loaded, cameras=cameras, words=words)
+        return EarlierSettings(self.kind.name, self.params, self.loaded, cameras=cameras, words=words)
+
+    @property
+    def undo_words(self) -> str:
+        """The act that an undo takes back, and the settings that come back; "" without an act."""
+        return self.words_to(self.history.last, "back to")
+
+    @property
+    def redo_words(self) -> str:
+        """The act that a redo repeats, and the settings that follow; "" without an act."""
+        return self.words_to(self.history.next, "forward to")
+
+    def words_to(self, settings: EarlierSettings | None, way: str) -> str:
+        """The act between the present settings and others of the history, and the name of these; "" without others."""
+        if settings is None:
+            return ""
+        if settings.scene != self.kind.name:
+            return f"{way} {in_words(settings.scene)}"
+        if settings.preset != self.loaded:
+            return f"{settings.words}, {way} {settings.preset}"
+        changed = changed_names(self.params, settings.params)
+        if len(changed) != 1:
+            return settings.words
+        (name,) = changed
+        value = value_in_words(parameters_of(self.params)[name], getattr(settings.params, name))
+        return f"{settings.words}, {way} {value}"
 
     def take(self, command: Take, preset: str) -> None:
         """Take parameters, and pass them to the simulation. preset: their source."""
@@ -260,6 +301,13 @@ class SceneSettings:
 def own_presets(kind: AnyKind) -> dict[str, Setup]:
     """The user's own set-ups of a scene, by their names in the list of presets."""
     return {OWN.format(name): setup for name, (_, setup) in own_files(kind).items()}
+
+
+def value_in_words(parameter: Parameter, value: Value) -> str:
+    """A value of a parameter, as the panel shows it."""
+    if parameter.choices:
+        return parameter.title_of(str(value))
+    return ("on" if value else "off") if isinstance(value, bool) else with_unit(float(value), parameter.unit)
 
 
 def with_fields_of(old: BaseParams | None, new: BaseParams) -> BaseParams:

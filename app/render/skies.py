@@ -4,12 +4,20 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.render.cameras import set_clipping
 from app.render.injection import injector_of
 from app.render.material import HAZE_DISTANCE, RGB, Material
 
+NIGHT = "night"
+STAR_COUNT = 700
+STAR_DISTANCE = 6000.0  # [m]
+STAR_SIZE = 0.0022  # [rad]
+LOWEST_STAR, CLEAR_AIR = 4.0, 25.0  # [deg] of elevation: of the lowest star, and from which the haze dims none
+FAINTEST = 0.12  # brightness of the faintest star over that of the brightest
 CAMERA_RANGE = 20_000.0  # [m] at which the camera's view ends; viser's own 1000 m would cut the horizon off
 
 
@@ -84,7 +92,7 @@ SKIES = {
         tint=(1.0, 0.86, 0.9),
         horizon=(232, 190, 196),
     ),
-    "night": Photograph(
+    NIGHT: Photograph(
         sun_column=0.36,
         sun_height=25.0,
         sun_color=(0.75, 0.85, 1.0),
@@ -141,6 +149,46 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
         sky_low=photo.low,
         sky_high=photo.high,
     )
+
+
+class Sky:
+    """The sky over a sea, with stars in clear nights, which are always the same."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.server = server
+        self.shown: tuple[str, float] | None = None  # arguments of the last `set`
+        self.stars: viser.PointCloudHandle | None = None  # made in the first night
+
+    def set(self, name: str, azimuth: float) -> Material:
+        """Set the sky as `set_sky` does."""
+        self.shown = name, azimuth
+        return set_sky(self.server, name, azimuth)
+
+    def show_stars(self, *, is_clear: bool) -> None:
+        """Draw stars over the whole sky at night, unless clouds hide them."""
+        shown = is_clear and self.shown is not None and self.shown[0] == NIGHT
+        if shown and self.stars is None:
+            points, colours = star_field()
+            self.stars = self.server.scene.add_point_cloud(
+                "/stars", points, colours, point_size=STAR_SIZE * STAR_DISTANCE, point_shape="circle",
+                precision="float32", point_shading="flat",
+            )  # fmt: skip
+        if self.stars is not None and self.stars.visible != shown:
+            self.stars.visible = shown
+
+
+def star_field() -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Points (n, 3) [m] on the upper half of a sphere, and colours (n, 3), sRGB; few are bright, haze dims low ones."""
+    rng = np.random.default_rng(1)
+    azimuth = 2.0 * np.pi * rng.random(STAR_COUNT)
+    height = rng.uniform(math.sin(math.radians(LOWEST_STAR)), 1.0, STAR_COUNT)  # as many in equal parts of the sky
+    level = np.sqrt(1.0 - height**2)
+    directions = np.column_stack([level * np.cos(azimuth), level * np.sin(azimuth), height])
+    brightness = FAINTEST + (1.0 - FAINTEST) * rng.random(STAR_COUNT) ** 4
+    brightness *= np.minimum(1.0, np.arcsin(height) / math.radians(CLEAR_AIR))
+    warmth = rng.uniform(-0.1, 0.1, STAR_COUNT)
+    colours = 255.0 * brightness[:, None] * np.column_stack([0.9 + warmth, np.full(STAR_COUNT, 0.92), 0.9 - warmth])
+    return (STAR_DISTANCE * directions).astype(np.float32), np.rint(colours).astype(np.uint8)
 
 
 def drawn_elevation(photo: Photograph) -> float:

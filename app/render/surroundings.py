@@ -32,8 +32,8 @@ class FloorColours(NamedTuple):
     section_color: Colour  # of the lines every 1 m
 
 
-LIGHT = FloorColours((222, 227, 233), (196, 203, 212), (160, 170, 184))
-DARK = FloorColours((36, 42, 51), (48, 56, 67), (66, 76, 90))
+LIGHT = FloorColours((222, 227, 233), (209, 215, 223), (187, 195, 206))
+DARK = FloorColours((36, 42, 51), (42, 49, 59), (53, 62, 74))
 
 
 class SkyColours(NamedTuple):

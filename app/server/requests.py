@@ -2,18 +2,8 @@
 
 import itertools
 import queue
-from typing import NamedTuple
 
-from app.messages import BaseParams
-from app.render.cameras import ClientCamera
-
-
-class SceneRequest(NamedTuple):
-    """A scene to open."""
-
-    scene: str
-    params: BaseParams | None  # from a task or a link
-    camera: ClientCamera | None  # of a link
+from app.panel.history import SceneRequest
 
 
 class SceneRequests:

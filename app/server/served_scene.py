@@ -11,12 +11,12 @@ import viser
 
 from app.lab.course.workbook import Workbook
 from app.messages import BaseParams, Command, Halt
+from app.panel.history import EarlierSettings, History
 from app.panel.panel import Panel
 from app.panel.recording.recorder import RecordedFrame
 from app.panel.settings import SceneSettings
 from app.panel.sharing.compare import ComparisonCalls
 from app.panel.sharing.scene_switches import SceneSwitches
-from app.render.cameras import ClientCamera
 from app.render.injection import injector_of
 from app.render.markup.html import note
 from app.scenes import NAMES, view_named
@@ -29,6 +29,7 @@ from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
 from app.server.placing import CameraPlacing
 from app.server.preparation import Preparation
 from app.server.replay_file import replay_html
+from app.server.requests import SceneRequests
 from app.server.web.guard import MessageFilter
 from app.server.web.transport import Transport
 
@@ -53,14 +54,11 @@ class SceneHost(Protocol):
     workbook: Workbook | None
     session: "Session | None"
     first_params: dict[str, BaseParams]
+    requests: SceneRequests
 
     @property
     def beside(self) -> ComparisonCalls | None:
         """Shows other set-ups beside this lab; None if this one is beside another."""
-        ...
-
-    def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
-        """Request a scene."""
         ...
 
     def visitors(self) -> list[int]:
@@ -92,10 +90,13 @@ class ServedScene:
         commands: queue.SimpleQueue[Command],
         *,
         paused: bool,
+        history: History,
+        earlier: EarlierSettings | None,
     ) -> None:
         """viewer: the server and the parts common to all scenes. `start` runs the threads.
 
-        scene: has the wanted parameters, or others if it cannot begin with those. commands: for it.
+        scene: has the wanted parameters, or others if it cannot begin with those. commands: for it. history: see
+        `SceneSettings`. earlier: see `SceneRequest`.
         """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: RecordedFrame | None = None  # the shown frame of the recording
@@ -107,7 +108,16 @@ class ServedScene:
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, lambda command: self.settings.drag(command))
         self.cameras = CameraPlacing(self.server, self.view, params)
-        self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want, viewer.first_params)
+        self.settings = SceneSettings(
+            self.server,
+            kind,
+            params,
+            self.commands.put,
+            viewer.requests.put,
+            viewer.first_params,
+            history,
+            "" if earlier is None else earlier.preset,
+        )
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changes=viewer.changes,
@@ -115,7 +125,7 @@ class ServedScene:
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
         self.first_picture = FirstPicture(injector_of(self.server), viewer.message_filter.pages)
-        self.loop = SimLoop(self.scene, self.commands, self.audience, paused=paused)
+        self.loop = SimLoop(self.scene, self.commands, self.audience, paused=paused, act=history.act)
         self.gate = CompileGate(viewer.compiling, kind, self.loop.record, self.loop.runs.keep_dropped)
         self.loop.admit = self.gate.admit
         if params != wanted:  # the loop fails again and gives the reason; the panel has the controls to correct it

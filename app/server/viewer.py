@@ -16,11 +16,12 @@ from app.lab.course.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
+from app.panel.history import EarlierSettings, History, SceneRequest
 from app.panel.panel import Panel
 from app.panel.settings import SceneSettings, with_fields_of
 from app.panel.sharing.compare import ComparisonCalls, PaneWords
 from app.panel.sharing.scene_switches import SceneSwitches
-from app.render.cameras import ClientCamera, place_client_camera
+from app.render.cameras import place_client_camera
 from app.render.handles.viser_inside import send_at_once
 from app.render.injection import disable_shaders, reset_page
 from app.render.markup.html import fill, note
@@ -31,7 +32,7 @@ from app.scenes.setups import make_setup
 from app.server.beside import ComparedLabs, Comparisons
 from app.server.loop.sim_loop import SimLoop
 from app.server.preparation import Preparation, cover
-from app.server.requests import SceneRequest, SceneRequests
+from app.server.requests import SceneRequests
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
 from app.server.web.access import OWN_PAGES_ONLY, Access
 from app.server.web.guard import Opened, open_pane, open_server, quiet
@@ -109,14 +110,15 @@ class Viewer:
         *,
         paused: bool = False,
         first_look: bool = False,
+        earlier: EarlierSettings | None = None,
         given_up: Callable[[], bool] = lambda: False,
     ) -> bool:
         """Show a scene in place of the open one. Returns False if the request was cancelled before the scene was ready.
 
         params: None for those that the scene was first given. Without any: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
-        are not kept. given_up: whether nobody waits for it any more. Whatever fails leaves a page that says why and
-        offers the scenes; the exception is raised.
+        are not kept. earlier: settings of the history, which an undo or a redo restores. given_up: whether nobody waits
+        for it any more. Whatever fails leaves a page that says why and offers the scenes; the exception is raised.
         """
         with self.changing:
             if self.ended:
@@ -135,7 +137,7 @@ class Viewer:
                 if not ready or self.ended:
                     return False
                 self.close()
-                self.make(kind, params, paused)
+                self.make(kind, params, paused, earlier)
                 return True
             except BaseException as error:
                 self.show_failure(name, error)
@@ -150,16 +152,19 @@ class Viewer:
         """True if the lab has ended, or another scene was requested after the request `asked`, while one is open."""
         return self.ended or (self.is_open and self.requests.is_newer(asked))
 
-    def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
+    def make(self, kind: AnyKind, params: BaseParams, paused: bool, earlier: EarlierSettings | None = None) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
         cover(self.server, f"Opening {kind.title} …")
         commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
         # Before the old panel is removed: viser's page takes the updates of a frame after its removals, and says in the
         # browser's console that there is nothing to update. Meanwhile it has taken the last updates.
         scene = self.make_scene(kind, params, commands.put)
+        history = history_after(self.current, kind.name, earlier)
         reset_page(self.server)
         opening = cover(self.server, f"Opening {kind.title} …")
-        self.current = current = ServedScene(self, kind, params, scene, commands, paused=paused)
+        self.current = current = ServedScene(
+            self, kind, params, scene, commands, paused=paused, history=history, earlier=earlier
+        )
         opening.remove()
         comparison = self.comparison
         if comparison is not None:
@@ -204,18 +209,19 @@ class Viewer:
             note(fill('<b class="springtide-panel">{} could not be opened.</b><br>{}', name, reason))
         )
 
-    def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
+    def want(self, name: str, params: BaseParams | None = None) -> None:
         """Request a scene; it is opened on a separate thread."""
-        self.requests.put(SceneRequest(name, params, camera))
+        self.requests.put(SceneRequest(name, params))
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers request; of several waiting only the last."""
         while not self.ended:
-            name, params, camera = self.requests.pop()
+            name, params, cameras, earlier = self.requests.pop()
             try:
-                if name in NAMES:
-                    self.open(name, params, first_look=True)
-                    place_client_camera(self.server, camera)
+                if name in NAMES and (earlier is None or self.settings.history.leads_to(earlier)):
+                    self.open(name, params, first_look=True, earlier=earlier)
+                    for camera in cameras:
+                        place_client_camera(self.server, camera)
             except Exception:
                 traceback.print_exc()
             time.sleep(MIN_SCENE_TIME)
@@ -340,3 +346,8 @@ class Viewer:
         self.want("")
         with quiet():
             self.server.stop()
+
+
+def history_after(last: ServedScene | None, scene: str, earlier: EarlierSettings | None) -> History:
+    """The history of a scene that replaces the last one, if there was one. earlier: see `SceneRequest`."""
+    return History() if last is None else last.settings.history_of_next(scene, earlier)

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.formatting import number
 from app.messages import Command, GrabTo, Release, finite_vector
 
-GRAB_COLOUR = (255, 90, 60)
+GRAB_COLOUR, LIMIT_COLOUR = (255, 90, 60), (150, 0, 60)
 
 
 def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None:
@@ -37,9 +38,11 @@ class SurfaceDrag:
 
 
 class GrabLine:
-    """A line that is drawn while something is grabbed."""
+    """A line that is drawn while something is grabbed. Where the force is at its limit, colour and words say so."""
 
     def __init__(self, server: viser.ViserServer, name: str = "/pull") -> None:
+        self.server, self.name, self.is_at_limit = server, name, False
+        self.words: viser.LabelHandle | None = None  # made at the first limit
         self.line = server.scene.add_line_segments(
             name,
             np.zeros((1, 2, 3), np.float32),
@@ -49,9 +52,27 @@ class GrabLine:
             visible=False,
         )
 
-    def show(self, ends: Any, load: float = 0.4) -> None:
-        """ends: (2, 3) [m], None while nothing is grabbed. load: fraction of the largest force of the grab, 0 to 1."""
+    def show(self, ends: Any, load: float = 0.4, limit: float = 0.0) -> None:
+        """ends: (2, 3) [m], None while nothing is grabbed. load: fraction of the largest force of the grab, 0 to 1.
+
+        limit: that force [N].
+        """
+        self.show_limit(ends, limit if ends is not None and load >= 1.0 else 0.0)
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)
             self.line.thickness = 2.0 + 5.0 * load
+
+    def show_limit(self, ends: Any, force: float) -> None:
+        """Show that the force [N] is the largest one; 0: it is smaller."""
+        is_at_limit = force > 0.0
+        if is_at_limit is not self.is_at_limit:
+            self.is_at_limit = is_at_limit
+            self.line.colors = np.array(LIMIT_COLOUR if is_at_limit else GRAB_COLOUR, np.uint8)
+        if is_at_limit and self.words is None:
+            self.words = self.server.scene.add_label(f"{self.name}/limit", "", anchor="bottom-center")
+        if self.words is not None:
+            self.words.visible = is_at_limit
+            if is_at_limit:
+                self.words.text = f"{number(force)} N: the largest mouse force"
+                self.words.position = np.asarray(ends[1], float)

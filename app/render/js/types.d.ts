@@ -10,6 +10,8 @@ declare var __springtide: Springtide | undefined;
 // What core/springtide.js describes.
 interface Springtide {
   failure?: string;
+  isWhole?: boolean;
+  areWhole?: () => boolean;
   page?: string;
   line?: Line;
   isRecording?: boolean;

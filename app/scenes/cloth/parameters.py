@@ -77,7 +77,13 @@ class ClothParams:
         0.2, 0.0, 100.0, "N·s/m", "Damping of floor, sphere and self-collision", log_from=1e-3
     )
     pull: float = in_surroundings(
-        8.0, 0.1, 1e3, "N", "Largest force with which the mouse pulls the cloth", log_from=0.1, title="Mouse force"
+        8.0,
+        0.1,
+        1e3,
+        "N",
+        "Largest force with which the mouse pulls the cloth; at least twice its weight",
+        log_from=0.1,
+        title="Mouse force",
     )
 
     speed: float = speed_parameter(0.01, 4.0)

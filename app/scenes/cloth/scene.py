@@ -39,7 +39,8 @@ MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faste
 MIN_PARTICLES_FOR_TWO_THREADS = 2000
 MAX_REACH = 60.0  # [m] of a particle from the first one along an axis; beyond it the run has diverged
 GRAB_LENGTH = 0.1  # [m] at which a grab has its largest force, if the step allows
-MAX_GRAB_STIFFNESS_STEP = 0.1  # stiffness of a grab over mass / step^2, so that it is stable at any step
+MAX_GRAB_STIFFNESS_STEP = 0.1  # stiffness of a grab over mass / step^2, for explicit methods, which are stable with it
+MIN_PULL = 2.0  # weights of the cloth that the mouse can pull at least
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
 SERIES = (*ENERGY_SERIES, "dissipated", "largest strain")
@@ -223,10 +224,12 @@ class ClothScene(NetScene[ClothParams]):
 
     def grab_spring(self, particle: int) -> GrabSpring:
         """The spring of a grab of a particle."""
-        mass = float(self.net.masses.flat[particle])
-        stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
-        stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
-        return GrabSpring(stiffness, 0.5 * math.sqrt(stiffness * mass), self.params.pull)
+        mass, p = float(self.net.masses.flat[particle]), self.params
+        largest = max(p.pull, MIN_PULL * float(self.net.masses.sum()) * p.gravity)
+        stiffness = largest / GRAB_LENGTH
+        if not self.motion.method.implicit:
+            stiffness = min(stiffness, MAX_GRAB_STIFFNESS_STEP * mass / self.step**2)
+        return GrabSpring(stiffness, 0.5 * math.sqrt(stiffness * mass), largest)
 
     def sphere_at(self, t: float) -> Vector:
         """Centre of the sphere at time t [m]."""

@@ -1,6 +1,7 @@
 """The cloth as a checked fabric or coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
 import functools
+import math
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -9,6 +10,7 @@ import viser
 from app.formats.formatting import counted, number
 from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
+from app.render.cameras import framing_view
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.handles.gizmo import Gizmo
@@ -17,6 +19,7 @@ from app.render.markup.html import Html, fill, info, join
 from app.render.meshes import ball, rod, tube_faces
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import ClothParams
+from app.scenes.cloth.start import corner, sphere_home
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.view import SecondNet, Sphere, SpringView
@@ -59,6 +62,14 @@ def checks(rows: int, cols: int) -> np.ndarray:
     return ((1.0 - share) * CLOTH_COLOUR + share * CHECK_COLOUR).astype(np.float32) / 255
 
 
+def reach_of(params: ClothParams) -> np.ndarray:
+    """Points (n, 3) [m] around a level cloth and the stroke of its sphere."""
+    x, y, z = corner(params)
+    sphere, reach = np.array(sphere_home(params)), params.sphere_radius + params.bob
+    corners = [(side * x, end * y, z) for side in (-1.0, 1.0) for end in (-1.0, 1.0)]
+    return np.array([*corners, sphere + (0.0, 0.0, reach), sphere - (0.0, 0.0, reach)])
+
+
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
@@ -68,6 +79,8 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
     CAMERA = ((0.7, -1.5, 1.9), (0.12, 0.0, 1.12))  # position, target [m]; of a level cloth
     FALLEN = ((0.55, -1.2, 1.55), (0.08, 0.0, 0.88))  # the same of one that nothing holds
     HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.32))  # the same of one that hangs
+    # Bearing and pitch [rad] of the camera where a sphere is under a held cloth, and the part of the picture for both.
+    BESIDE, FRAME = (math.radians(291.0), math.radians(9.0)), (0.74, -0.8, 0.75)
     FIELD_OF_VIEW = 1.3  # [rad]
     WARM_UP: ClassVar[Pieces] = {"packing": compile_packing}
 
@@ -94,6 +107,8 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         """Position and target [m] of a camera that has not been moved."""
         if params.start != "level":
             return self.HANGING
+        if params.sphere and params.pinned != "free":
+            return framing_view(reach_of(params), *self.BESIDE, self.FIELD_OF_VIEW, self.FRAME)
         return self.FALLEN if params.pinned == "free" else self.CAMERA
 
     def build(self, frame: ClothFrame) -> None:

@@ -20,6 +20,7 @@ from app.scenes.mooring.drawing.ends_view import DrawnEnds
 from app.scenes.mooring.drawing.lines_view import DrawnLines
 from app.scenes.mooring.drawing.watch_view import WatchCircle
 from app.scenes.mooring.drawing.water_view import SeenWater
+from app.scenes.mooring.drawing.waves_view import WaveHeight
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.readings.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
@@ -42,6 +43,7 @@ class DrawnMooring(NamedTuple):
     body: DrawnBody
     ends: DrawnEnds
     watch: WatchCircle
+    waves: WaveHeight
     water: SeenWater
 
 
@@ -78,7 +80,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         set_clipping(server, 0.002 * far, FAR_VIEW * far)
         return DrawnMooring(
             DrawnBed(server, frame, label), DrawnLines(server, frame), DrawnBody(server, frame, self.on_body),
-            DrawnEnds(server, frame), WatchCircle(server, frame), SeenWater(server, frame),
+            DrawnEnds(server, frame), WatchCircle(server, frame), WaveHeight(server), SeenWater(server, frame),
         )  # fmt: skip
 
     @staticmethod

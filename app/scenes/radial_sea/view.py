@@ -16,7 +16,7 @@ from app.render.follow_camera import FollowCamera
 from app.render.handles.dragging import GrabLine, drag
 from app.render.markup.html import bold, fill
 from app.render.material import Material
-from app.render.skies import set_sky
+from app.render.skies import Sky
 from app.render.water import DrawnWater
 from app.scenes.contract import Pieces, SceneView
 from app.scenes.radial_sea.cutaway import DIRECTION
@@ -63,7 +63,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         self.server, self.post = server, post
         self.water: DrawnWater | None = None
         self.grid: RadialGrid | None = None
-        self.sky = ""
+        self.sky = Sky(server)
         self.light = self.material = Material()
         self.surface: RadialSurface | None = None  # as drawn
         self.bodies, self.moorings = DrawnBodies(server, self.on_body_drag), DrawnMoorings(server)
@@ -90,9 +90,9 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
     def show(self, frame: RadialFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         p = frame.params
-        if self.sky != p.sky:
-            self.sky = p.sky
-            self.light = set_sky(self.server, p.sky, SUN_BEARING)
+        if self.sky.shown != (p.sky, SUN_BEARING):
+            self.light = self.sky.set(p.sky, SUN_BEARING)
+            self.sky.show_stars(is_clear=True)
             self.place_lamps()
         self.show_sea(frame)
         self.show_cutaway(frame)

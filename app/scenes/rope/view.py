@@ -37,6 +37,7 @@ SPHERE_ARROW_LENGTH = 0.45  # [m]
 SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
 SHOWN_SWING = 1.75  # lengths of the rope in the picture's height, so that it stays in the picture as it swings
+SHOWN_UNDAMPED_SWING = 2.6  # the same without drag: it swings to both sides as far as it began
 ELEVATION = 0.25  # [rad] of the camera over its target, so that the shadow on the floor is in the picture
 LOWER = 0.03  # heights of the picture from the middle of the rope down to the target
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
@@ -134,12 +135,13 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         )
 
     def first_view(self, params: RopeParams) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
-        length, stretch = rope_lengths(build_rope(params))
+        """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs and swings."""
+        net = build_rope(params)
+        length, stretch = rope_lengths(net)
         fall = length + min(stretch, length)
         if params.floor:
             fall = min(fall, ROOT[2])
-        height = max(fall / SHOWN_SHARE, SHOWN_SWING * length)
+        height = max(fall / SHOWN_SHARE, (SHOWN_SWING if net.drag > 0.0 else SHOWN_UNDAMPED_SWING) * length)
         distance, target = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW), ROOT[2] - 0.5 * fall - LOWER * height
         position = 0.0, -distance * math.cos(ELEVATION), target + distance * math.sin(ELEVATION)
         return position, (0.0, 0.0, target)

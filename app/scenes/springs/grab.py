@@ -17,6 +17,7 @@ class GrabFrame(NamedTuple):
     particle: int  # flat index
     target: Vector  # [m] where it is pulled to
     load: float  # the force over the largest force of a grab, 0 to 1
+    limit: float  # [N] the largest force
 
 
 class GrabSpring(NamedTuple):
@@ -84,7 +85,9 @@ class ParticleGrab:
         position, spring = x.reshape(3, -1)[:, particle % x[0].size], spring_of(particle)
         distance = float(np.linalg.norm(np.asarray(hand.position) - position))
         load = min(1.0, distance * spring.stiffness / spring.max_force)
-        return GrabFrame(particle, (hand.position[0], hand.position[1] + offset, hand.position[2]), load)
+        return GrabFrame(
+            particle, (hand.position[0], hand.position[1] + offset, hand.position[2]), load, spring.max_force
+        )
 
     def clear(self) -> None:
         """Release it from any client."""

@@ -11,16 +11,15 @@ import viser
 
 from app.formats.formatting import metres, number, percent
 from app.formats.packing import compile_packing
-from app.formats.round_step import round_step
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.handles.viser_inside import set_arrays
 from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
-from app.render.meshes import ball, tube_faces
-from app.render.skies import set_sky
-from app.render.staff import COLOURS, UPRIGHT, add_staff
+from app.render.meshes import ball
+from app.render.skies import Sky
+from app.render.staff import WaveStaff, upright
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
 from app.scenes.measured_sea import files_folder, height_and_period
@@ -67,10 +66,7 @@ MIN_RIPPLE_LENGTHS = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tens
 FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hides the facets of the mesh
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
-GAUGE_SIDES = 24  # of its cylinders
 FLOAT_RADIUS, FLOAT_TOP, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.09, 3.0  # [m]
-STAFF_SLENDERNESS = 0.12  # radius of the staff, over the height of a band
-LEVEL_COLOUR = (0.96, 0.84, 0.2)
 GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
@@ -114,7 +110,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.marked: Highest | None = None  # crest that the mark is on
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
         self.view = DEFAULTS.view
-        self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
+        self.sky = Sky(server)
         self.sky_material = self.material = Material()
         self.made_of: tuple[object, ...] = ()  # arguments of the material
         self.last: SeaFrame | None = None
@@ -133,12 +129,13 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
     def show(self, frame: SeaFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         p = frame.params
-        if self.sky != (p.sky, p.sun):
-            self.sky = p.sky, p.sun
-            self.sky_material = set_sky(self.server, p.sky, math.radians(p.sun))
-        made_of = p, frame.slope_resolved, self.sky
+        sky = p.sky, math.radians(p.sun)
+        if self.sky.shown != sky:
+            self.sky_material = self.sky.set(*sky)
+        made_of = p, frame.slope_resolved
         if made_of != self.made_of:
             self.made_of = made_of
+            self.sky.show_stars(is_clear=p.clouds < OVERCAST_FROM)
             material = self.material_of(frame)
         else:
             material = self.material
@@ -259,7 +256,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
             self.mark = self.server.scene.add_label("/highest", "", anchor="bottom-center")
         self.mark.visible = highest is not None
         if highest is not None:
-            self.mark.text = f"{number(highest.place[2])} m"
+            self.mark.text = f"{number(highest.place[2])} m at {highest.time:.0f} s"
             self.mark.position = highest.place
 
     def move_cameras(self, old: float, new: float) -> None:
@@ -339,38 +336,6 @@ class WaveGaugeMesh:
                 set_arrays(part, batched_positions=np.array([position]))
 
 
-class WaveStaff:
-    """A staff that stands in the sea: bands, a ring at still water, and the height at every second band."""
-
-    def __init__(self, server: viser.ViserServer, place: Vector) -> None:
-        """place: x and y [m], and the significant height of the waves [m], which sets the bands."""
-        x, y, height = self.place = place
-        band = round_step(max(height, MIN_GAUGE_VIEW_HEIGHT) / 3.0)
-        above, below = math.ceil(2.0 * height / band) + 1, math.ceil(1.5 * height / band) + 1
-        radius = STAFF_SLENDERNESS * band
-        scene = server.scene
-        self.handles = [
-            add_staff(server, "/staff", (x, y, 0.0), band, range(-below, above), radius),
-            scene.add_batched_meshes_simple(
-                "/staff/level", *upright(1.4 * radius, -0.04 * band, 0.04 * band),
-                batched_wxyzs=UPRIGHT[None], batched_positions=np.array([(x, y, 0.0)], np.float32),
-                batched_colors=as_linear_bytes(LEVEL_COLOUR), lod="off",
-            ),
-            *(
-                scene.add_label(
-                    f"/staff/{i}", f"{number(i * band)} m" if i else "still water", anchor="center-left",
-                    position=(x + 1.6 * radius, y, i * band),
-                )
-                for i in range(0, above + 1, 2)
-            ),
-        ]  # fmt: skip
-        self.waterline = Waterline((x, y), 0.0, (0.0, 0.0), radius, above * band, color=COLOURS[0])
-
-    def remove(self) -> None:
-        """Take it away, and with it all that is named below it."""
-        self.handles[0].remove()
-
-
 def waterlines_of(gauge: Vector | None) -> list[Waterline]:
     """Float and spar of a wave gauge at this position [m], as the water mirrors them, or None."""
     if gauge is None:
@@ -380,16 +345,6 @@ def waterlines_of(gauge: Vector | None) -> list[Waterline]:
         Waterline((x, y), 0.0, (0.0, 0.0), radius, z + top, color=colour)
         for radius, top, colour in ((FLOAT_RADIUS, FLOAT_TOP, GAUGE_COLOUR), (SPAR_RADIUS, SPAR_TOP, SPAR_COLOUR))
     ]
-
-
-def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of a cylinder of `radius` between two heights [m]."""
-    angle = 2 * math.pi / GAUGE_SIDES * np.arange(GAUGE_SIDES)
-    ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    heights = np.repeat([low, high], GAUGE_SIDES)[:, None]
-    sides = np.hstack([np.concatenate([ring, ring]), heights])
-    vertices = np.concatenate([sides, [[0.0, 0.0, low], [0.0, 0.0, high]]])
-    return vertices, tube_faces(2, GAUGE_SIDES)
 
 
 VIEW = SquareSeaView

@@ -61,10 +61,13 @@ class AwaitedEvent:
 class SceneRun:
     """Takes a scene's steps, and restarts it."""
 
-    def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
+    def __init__(
+        self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool, act: int
+    ) -> None:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock = scene, audience, clock
-        self.identity, self.numbers = RunIdentity(), itertools.count(2)  # of this run; of those to come
+        self.identity = RunIdentity(act=act, placed=act)
+        self.numbers = itertools.count(2)  # of the runs to come
         self.request = np.zeros(4, np.int64)  # for the running solve: see sim/interruption.py
         self.activity = NOTHING
         self.unfinished: Callable[[], None] | None = None  # a reset that was cancelled

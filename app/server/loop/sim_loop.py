@@ -67,6 +67,7 @@ class SimLoop:
         *,
         admit: Callable[[Iterable[Command]], list[Command]] = list,
         paused: bool = False,
+        act: int = 1,
         clock: Clock = time.perf_counter,
         effort: Clock = effort_clock,
         sleep: Callable[[float], None] = time.sleep,
@@ -74,7 +75,8 @@ class SimLoop:
     ) -> None:
         """audience: number of watching browsers.
 
-        admit: selects the commands to handle now, from new ones and those held back before.
+        admit: selects the commands to handle now, from new ones and those held back before. act: number of the person's
+        act that begins the first run.
         clock: wall time [s]. effort: clock of the cost of solving, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
         sleep: for a time [s]. gives_way: draw fewer frames if sleeps end late, as on a hub.
@@ -85,7 +87,7 @@ class SimLoop:
             Command
         ] = []  # for the next tick: the one that ended a sleep, and those not handled during a solve
         self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
-        self.run = SceneRun(scene, audience, self.clock, paused=paused)
+        self.run = SceneRun(scene, audience, self.clock, paused=paused, act=act)
         self.runs = RunSequence(self.run)
 
     @property

@@ -45,7 +45,7 @@ from app.render.handles.viser_inside import (
     wake_on_loop,
 )
 from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
-from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, read_origin, refusal
+from app.server.web.access import KEY_VARIABLE, OWN_PAGES_ONLY, Access, admitted, read_origin, refusal
 from app.server.web.beat import PAGE, Beats
 from app.server.web.page import own_answer, with_cover
 from app.server.web.panes import Panes
@@ -56,7 +56,7 @@ MAX_LENGTH = 1000  # of a text, or of a list
 MAX_FIELD_LENGTH = 64  # of a text typed into a field
 MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
-MAX_REPORTED = 5  # addresses of refused pages in the terminal
+MAX_REPORTED = 5  # kinds of refused pages in the terminal
 MAX_WAITING = 64  # waiting messages of one browser
 STARTING = threading.Lock()  # one server at a time: websockets' serve() is patched while a server starts
 
@@ -131,14 +131,24 @@ class RefusedPages:
     def report(self, origin: str) -> None:
         """Print that a page of this origin was refused, and the option that would allow it."""
         option = advice(origin)
-        if not option or option in self.reported or len(self.reported) >= MAX_REPORTED:
-            return
-        self.reported.add(option)
-        print(
-            f"springtide: refused a page at {option.split()[1]}. If it is yours, start the lab with {option}",
-            file=sys.stderr,
-            flush=True,
-        )
+        if option:
+            self.say(f"refused a page at {option.split()[1]}. If it is yours, start the lab with {option}")
+
+    def report_path(self, access: Access, response: Response) -> None:
+        """Print that a page was refused by its path, and which path is right. The key itself is not printed."""
+        if response.status_code == HTTPStatus.FORBIDDEN:
+            self.say(
+                "refused a page without the key. Open the address that was printed at the start, or start the lab "
+                f"without {KEY_VARIABLE}"
+            )
+        elif response.status_code == HTTPStatus.NOT_FOUND:
+            self.say(f"refused a page outside of {access.base_path}/, where --base-path puts the lab")
+
+    def say(self, words: str) -> None:
+        """Print a sentence once."""
+        if words not in self.reported and len(self.reported) < MAX_REPORTED:
+            self.reported.add(words)
+            print(f"springtide: {words}", file=sys.stderr, flush=True)
 
     @staticmethod
     def reason(origin: str) -> str:
@@ -169,6 +179,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
         def check(connection: ViserConnection, sent: Request) -> object:
             request = admitted(access, sent)
             if isinstance(request, Response):
+                refusals.report_path(access, request)
                 return request
             origin = request.headers.get("Origin")
             if not may_connect(request, bound, access, origin):

@@ -73,7 +73,7 @@ class Pressed:
         self.asked: list[object] = []  # of the viewer
         monkeypatch.setattr(self.gui, "_resolve_client", lambda number: self.client)
         monkeypatch.setattr(viewer.settings, "post", self.posted.append)
-        monkeypatch.setattr(viewer.settings, "open_scene", lambda *scene: self.asked.append(scene))
+        monkeypatch.setattr(viewer.settings, "open_scene", self.asked.append)
         monkeypatch.setattr(self.panel.recorder, "wake", self.update)
         assert self.panel.compare is not None
         asked = ComparisonCalls(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())

@@ -72,21 +72,20 @@ def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:
 def test_a_slider_that_is_moved_is_one_change() -> None:
     history = History()
     for stiffness in range(1, 50):
-        history.note(EarlierSettings(RopeParams(stiffness=float(stiffness)), "first"), number="stiffness")
-    history.note(EarlierSettings(RopeParams(mass=3.0), "first"), number="mass")
-    assert history.take_last(EarlierSettings(RopeParams(), "now")) == EarlierSettings(RopeParams(mass=3.0), "first")
-    assert history.take_last(EarlierSettings(RopeParams(), "now")) == EarlierSettings(
-        RopeParams(stiffness=1.0), "first"
-    )
-    assert history.take_last(EarlierSettings(RopeParams(), "now")) is None
+        history.note(EarlierSettings("rope", RopeParams(stiffness=float(stiffness)), "first"), number="stiffness")
+    history.note(EarlierSettings("rope", RopeParams(mass=3.0), "first"), number="mass")
+    now = EarlierSettings("rope", RopeParams(), "now")
+    assert history.take_last(now) == EarlierSettings("rope", RopeParams(mass=3.0), "first")
+    assert history.take_last(now) == EarlierSettings("rope", RopeParams(stiffness=1.0), "first")
+    assert history.take_last(now) is None
 
 
 def test_each_act_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
-    history, settings = History(), EarlierSettings(RopeParams(), "a")
+    history, settings = History(), EarlierSettings("rope", RopeParams(), "a")
     acts = ("points", True), ("mass", False), ("", True), ("", True), ("points", True)
     assert [history.note(settings, number=number, begins=begins) for number, begins in acts] == [2, 2, 3, 4, 5]
     assert history.note(settings, number="points", begins=True) == 5  # the same change
-    back = [history.take_last(EarlierSettings(RopeParams(), "now")) for _ in range(5)]
+    back = [history.take_last(EarlierSettings("rope", RopeParams(), "now")) for _ in range(5)]
     assert [settings.act for settings in back if settings is not None] == [4, 3, 2, 2, 1]
     assert history.note(settings, begins=True) == 6  # no number comes twice
 
@@ -94,7 +93,7 @@ def test_each_act_that_begins_a_run_has_a_number_to_which_undo_returns() -> None
 def test_a_drag_is_one_change_however_slow_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setattr("app.panel.history.time.monotonic", lambda: now)
-    history, settings = History(), EarlierSettings(RopeParams(), "a")
+    history, settings = History(), EarlierSettings("rope", RopeParams(), "a")
 
     def drag(waits: list[float], client: int) -> None:
         nonlocal now

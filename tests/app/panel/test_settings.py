@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from app.messages import Take
+from app.panel.history import SceneRequest
 from app.panel.settings import Placing, SceneSettings
 from app.render.cameras import ClientCamera
 from app.scenes import scene_named
@@ -24,8 +25,7 @@ class Told:
         self.asked: list[Any] = []
         self.shown: list[Any] = []
         server: Any = SimpleNamespace(get_clients=dict)
-        ask = lambda *scene: self.asked.append(scene)  # noqa: E731
-        self.settings = SceneSettings(server, scene_named("rope"), RopeParams(), self.posted.append, ask)
+        self.settings = SceneSettings(server, scene_named("rope"), RopeParams(), self.posted.append, self.asked.append)
         self.settings.watchers.append(lambda: self.shown.append(self.settings.params))
 
 
@@ -72,7 +72,7 @@ def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: T
     assert (settings.params, settings.loaded) == (RopeParams(mass=0.3), "Pendulum")
     assert settings.other_name == "Pendulum (changed)"
     settings.show_setup(Setup("cloth", cloth, {}, "", CAMERA), 7)
-    assert told.asked == [("cloth", cloth, ClientCamera(7, *CAMERA))]
+    assert told.asked == [SceneRequest("cloth", cloth, (ClientCamera(7, *CAMERA),))]
     assert len(told.posted) == 1
     settings.undo()
     assert settings.params == RopeParams()

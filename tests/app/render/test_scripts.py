@@ -98,6 +98,7 @@ def test_pure_modules_do_what_their_tests_say(tmp_path: Path) -> None:
         file = tmp_path / "js" / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(source, "utf-8")
+    shutil.copytree(ROOT / "app" / "render" / "js" / "before", tmp_path / "js" / "before")
     tests = sorted((ROOT / "tests" / "js").rglob("*.test.js"))
     for test in tests:
         shutil.copy(test, tmp_path)

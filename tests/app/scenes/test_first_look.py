@@ -15,6 +15,7 @@ DURATION, LATER = 30.0, 0.5  # [s] of simulated time
 LOOKS = 5  # within LATER
 SHORT = 8.0  # [s] of the cloth, which takes half as long to compute as it lasts
 MIN_MOVE = 0.01  # [m]
+SMALL_ASPECT = 0.93  # width over height of the part of a window of 760 x 475 that panel and time line leave free
 SHOWN_ASPECT = 1.05  # width over height of what js/page/camera.js shows beside the panel
 
 
@@ -61,6 +62,27 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
         shares.append(np.ptp(seen @ np.cross(right, ahead) / picture))
         assert (abs(seen @ right) < 0.59 * picture).all()  # at 1280 x 800 the panel covers the rest
     assert 0.4 < max(shares) < 0.75, shares
+
+
+@pytest.mark.parametrize(("name", "preset", "duration"), [("rope", "Pendulum", 2.2), ("cloth", "Trampoline", 0.8)])
+def test_the_first_view_holds_the_whole_motion(name: str, preset: str, duration: float) -> None:
+    """A period of the pendulum, and the upper half of the stroke of the sphere."""
+    kind, view = scene_named(name), view_named(name)
+    params = make_setup(kind, preset).params
+    scene = kind.make(params)
+    position, target = view.first_view(object.__new__(view), params)
+    seen = []
+    while scene.time < duration:
+        frame = scene.frame()
+        points = [drawn(kind, frame)]
+        if frame.sphere is not None:
+            center, radius = np.array(frame.sphere[:3]), frame.sphere[3]
+            points.append(center + radius * np.concatenate([np.eye(3), -np.eye(3)]))
+        seen.append(in_picture(position, target, view.FIELD_OF_VIEW, np.concatenate(points)))
+        scene.advance(round(0.1 / scene.step))
+    x, y = abs(np.concatenate(seen)).max(axis=0)
+    assert 0.6 < x < SMALL_ASPECT
+    assert y < 0.95
 
 
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])

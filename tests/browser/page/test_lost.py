@@ -1,6 +1,7 @@
 """What a page has lost and finds again: its graphics context, its connection, its server."""
 
 import base64
+import functools
 import io
 import time
 from collections.abc import Callable
@@ -12,10 +13,13 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from app.messages import Pause
+from app.notebook.output import Output
 from app.render import surroundings
 from app.scenes import NAMES
+from app.scenes.setups import read_query
 from app.server.viewer import Viewer
 from app.server.web import page as served_page
+from app.server.web.access import Access, make_key
 from tests.browser.conftest import NO_FLOATS, Tab, new_page, vertices_of
 from tests.browser.slow_line import slow_line
 
@@ -273,6 +277,15 @@ MAX_BACK = 5.0  # [s] until a page goes on once the line is back
 SLOW_MACHINE = 3.0  # [s] more for a page that draws in software
 
 
+def wait_shown(frame: Any, condition: Callable[[dict[str, str]], bool], seconds: float) -> dict[str, str]:
+    """The words of a page, or of a frame in it, once they are as expected."""
+    end = time.monotonic() + seconds
+    while not condition(found := frame.evaluate(SHOWN)):
+        assert time.monotonic() < end, found
+        frame.wait_for_timeout(50)
+    return found
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("wholly", [False, True])
 def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: Any, wholly: bool) -> None:
@@ -280,14 +293,7 @@ def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: 
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")
     page = new_page(chromium, 480, 320, drawn=False)
-
-    def wait(condition: Callable[[dict[str, str]], bool], seconds: float) -> dict[str, str]:
-        end = time.monotonic() + seconds
-        while not condition(found := page.evaluate(SHOWN)):
-            assert time.monotonic() < end, found
-            page.wait_for_timeout(50)
-        return found
-
+    wait = functools.partial(wait_shown, page)
     with slow_line(viewer.port, FAST, 0.0) as line:
         try:
             page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
@@ -308,6 +314,60 @@ def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: 
             shown = wait(lambda shown: shown["state"] == "open" and shown["status"].startswith("Running"), back)
             assert shown["line"] == shown["cover"] == ""
             assert len(viewer.visitors()) == 1
+        finally:
+            page.close()
+            viewer.shut()
+
+
+def check_silence(page: Any, line: Any, labs: tuple[Viewer, ...]) -> None:
+    """All frames of a page with labs say that their line has died, and each goes on over a new one."""
+    while len(frames := [frame for frame in page.frames if "index.html" in frame.url]) < len(labs):
+        page.wait_for_timeout(50)
+    for frame in frames:
+        wait_shown(frame, lambda shown: "Running" in shown["status"] and not shown["cover"], 60.0)
+    page.wait_for_timeout(3000)
+    line.fall_silent()
+    end = time.monotonic() + MAX_SILENT
+    for frame in frames:
+        said = wait_shown(frame, lambda shown: shown["state"] != "open", end - time.monotonic())
+        assert said["line"] == "Nothing arrives from the lab: this picture is old."
+    for frame in frames:
+        back = MAX_SILENT + MAX_BACK + SLOW_MACHINE
+        wait_shown(frame, lambda shown: shown["state"] == "open" and "Running" in shown["status"], back)
+    times = [lab.scene.time for lab in labs]
+    while any(lab.scene.time <= before for lab, before in zip(labs, times, strict=True)):
+        page.wait_for_timeout(50)
+    assert [len(lab.visitors()) for lab in labs] == [1] * len(labs)
+
+
+@pytest.mark.long
+def test_two_panes_whose_connections_die_say_so_and_go_on(chromium: Any) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    viewer.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
+    assert viewer.comparison is not None
+    page = new_page(chromium, 900, 400, drawn=False)
+    with slow_line(viewer.port, FAST, 0.0) as line:
+        try:
+            page.goto(f"http://127.0.0.1:{line.port}/beside?hideViserLogo&fixedDpr=0.2")
+            check_silence(page, line, viewer.comparison.viewers)  # type: ignore[arg-type]
+            page.wait_for_function("/t = /.test(document.querySelector('#clock').textContent)")
+        finally:
+            page.close()
+            viewer.shut()
+
+
+@pytest.mark.long
+def test_the_lab_of_a_notebook_whose_connection_dies_says_so_and_goes_on(chromium: Any) -> None:
+    key = make_key()
+    viewer = Viewer("127.0.0.1", 0, access=Access(key=key))
+    viewer.open("rope")
+    page = new_page(chromium, 600, 400, drawn=False)
+    with slow_line(viewer.port, FAST, 0.0) as line:
+        try:
+            page.goto(f"http://127.0.0.1:{line.port}/{key}/springtide-alive")
+            page.set_content(Output(line.port, key, 320).html())
+            check_silence(page, line, (viewer,))
         finally:
             page.close()
             viewer.shut()

@@ -151,6 +151,9 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
         buttons.nth(number).click(trial=True, timeout=5000)
     other.page.keyboard.press("Home")
     other.wait(lambda: recorder.position == 0, 20)
+    for playing in (True, False):
+        other.page.keyboard.press("Space")
+        other.wait(lambda playing=playing: recorder.playing is playing, 20)
     other.page.get_by_role("button", name="Live", exact=True).click()
     tab.wait(lambda: recorder.shown is None and lab.loop.run.running, 20)
     tab.wait(lambda: tab.page.locator("#springtide-time").inner_text().endswith("Live"), 20)

@@ -14,6 +14,9 @@
 // Messages that a newer viser adds pass unchanged. The lab ends an earlier connection of the page that connects again, which
 // it knows by a name in the address.
 //
+// A page of another version than the lab's is refused by the lab, whose terminal names both versions. It does not try again: the
+// cover says what to do (page/cover.js).
+//
 // viser's client tries again only while its page has the focus. A page that is seen without it, on a projector or in a frame
 // beside others, would stand still. Here a page that is visible counts as one with the focus.
 
@@ -31,6 +34,7 @@
 
   window.Worker = class extends Worker {
     #began = -Infinity; // [ms] the attempt under way
+    #isRefused = false; // true for a page of another version
 
     /** @param {ConstructorParameters<typeof Worker>} all */
     constructor(...all) {
@@ -48,6 +52,10 @@
         line.close = () => this.dispatchEvent(new MessageEvent("message", { data: { type: "closed", closeReason: "silent" } }));
       }
       if (data?.type === "closed") [this.#began, line.isOpen] = [-Infinity, false];
+      if (data?.versionMismatch) {
+        this.#isRefused = true;
+        springtide.failure ??= "This page is of another version than the lab: reload it.";
+      }
       if (data?.type !== "message_batch") return;
       line.heard += 1;
       line.wait = 0;
@@ -60,7 +68,7 @@
     /** @param {any} message @param {any} [how] */
     postMessage(message, how) {
       const now = performance.now(), kind = message?.type;
-      if (kind === "retry" && now < this.#began + lasting) return;
+      if (kind === "retry" && (this.#isRefused || now < this.#began + lasting)) return;
       if (kind === "retry" || kind === "set_server") [this.#began, lasting] = [now, PATIENCE];
       if (kind === "set_server") message = { ...message, server: `${message.server}?page=${springtide.page}` };
       super.postMessage(message, how);

@@ -4,6 +4,7 @@
 const PARTS = {
   cover: () => import("./cover.js"),
   line: () => import("./line.js"),
+  veil: () => import("./veil.js"),
   marks: () => import("../panel/marks.js"),
   scene: () => import("../scene/main.js"),
   camera: () => import("./camera.js"),

@@ -111,6 +111,10 @@ page.listen(bar, "click", (event) => {
   if (act) send(act, act === "loop" ? Number(!state.loops) : line.value);
 });
 page.listen(bar, "keydown", (event) => {
+  if (event.target === line && event.key === " ") {
+    event.preventDefault();
+    return send("play", line.value);
+  }
   if (!/^(Arrow|Page|Home|End)/.test(event.key)) return;
   event.stopPropagation(); // they would move the camera
   const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];

@@ -16,6 +16,15 @@ export function showCover(text, hidden) {
   cover.classList.toggle("springtide-hidden", hidden);
 }
 
+// Labs side by side are seen together. False while another frame of the page with the panes waits for its picture.
+function othersAreWhole() {
+  try {
+    return window.parent === window || (window.parent.__springtide?.areWhole?.() ?? true);
+  } catch {
+    return true; // embedded in a page of another origin
+  }
+}
+
 /** @type {string | null} */
 let opened = null; // the scene whose picture is awaited
 let openedAt = 0; // [ms] since when
@@ -33,7 +42,8 @@ export function awaitsPicture(scene) {
   }
   const since = now - openedAt, { showsWhole } = springtide;
   if (!scene) return since < SETTLING;
-  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
+  springtide.isWhole = since >= (showsWhole ? PATIENCE : UNDRAWN) || (since >= SETTLING && Boolean(showsWhole?.()));
+  if (!springtide.isWhole || (since < PATIENCE && !othersAreWhole())) return true;
   pictured = scene;
   isSimple = Boolean(showsWhole && !showsWhole());
   return false;

@@ -45,7 +45,7 @@ class SpringView(SceneView[P, F, R]):
         if grab is None:
             self.grab.show(None)
         else:
-            self.grab.show((self.points[grab.particle], grab.target), grab.load)
+            self.grab.show((self.points[grab.particle], grab.target), grab.load, grab.limit)
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky and floor dark, or light again, for one browser."""

@@ -97,11 +97,13 @@ def test_a_dragged_particle_follows_and_is_released():
     target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
     scene.handle(GrabTo(index, target))
     run(scene, 0.7)
-    stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
+    largest = max(scene.params.pull, 2.0 * scene.net.masses.sum() * scene.params.gravity)
+    stiffness = min(largest / 0.1, 0.1 * scene.net.mass / scene.step**2)
     stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])
     pull = scene.frame().grab
     assert pull is not None
-    assert pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
+    assert pull.load == pytest.approx(min(1.0, stretch * stiffness / largest), rel=1e-4)
+    assert pull.limit == pytest.approx(largest)
     assert scene.state.x[1, 7, 4] < before[1] - 0.2
     scene.handle(Release())
     run(scene, 0.1)
@@ -350,12 +352,30 @@ def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
 
 @pytest.mark.parametrize("step", [1e-4, 1 / 60])
 def test_a_pull_is_as_stiff_as_the_step_allows(step):
-    scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=3.0))
+    scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=30.0))
     for index in (74, 0):  # inside, and at a corner
         mass = scene.net.masses.flat[index]
-        stiffness, damping, _ = scene.grab_spring(index)
-        assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * mass / step**2))
+        stiffness, damping, largest = scene.grab_spring(index)
+        assert largest == 30.0
+        assert stiffness == pytest.approx(min(30.0 / 0.1, 0.1 * mass / step**2))
         assert damping == pytest.approx(0.5 * math.sqrt(stiffness * mass))
+
+
+def test_a_hand_pulls_at_least_twice_the_weight_and_an_implicit_method_follows_it_at_a_long_step() -> None:
+    """A corner of a stiff curtain."""
+    scene = ClothScene(
+        ClothParams(rows=12, cols=12, stiffness=1e5, integrator="implicit_euler", time_step=1 / 60, wind=0.0, pull=0.1)
+    )
+    run(scene, 1.0)
+    weight = scene.net.masses.sum() * 9.81
+    index = 11 * 12
+    before = scene.state.x.reshape(3, -1)[:, index].copy()
+    target = before + (0.0, -0.3, 0.15)
+    scene.handle(GrabTo(index, tuple(target.tolist())))
+    run(scene, 1.5)
+    stiffness, _, largest = scene.grab_spring(index)
+    assert (stiffness, largest) == pytest.approx((2.0 * weight / 0.1, 2.0 * weight))
+    assert np.linalg.norm(scene.state.x.reshape(3, -1)[:, index] - target) < 0.05
 
 
 def test_plot_rows_are_measures_with_the_units_of_their_charts():

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from app.render.injection import disable_shaders
-from app.scenes.mooring.arrangement import body_of, build, first_places, line_types, sections
+from app.scenes.mooring.arrangement import body_of, build, extent, first_places, line_types, sections
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.square import square_faces, square_points
-from app.scenes.mooring.drawing.watch_view import WatchCircle
+from app.scenes.mooring.drawing.watch_view import LABELLED, WatchCircle
 from app.scenes.mooring.drawing.water_view import SeenWater
+from app.scenes.mooring.drawing.waves_view import WaveHeight
 from app.scenes.mooring.files.from_file import mooring_of, slack_of
 from app.scenes.mooring.frame import EndStatistics
 from app.scenes.mooring.parameters import MooringParams
@@ -170,4 +171,34 @@ def test_the_watch_circle_is_a_circle_about_the_place_of_rest_as_wide_as_the_far
     assert lengths.sum() == pytest.approx(2.0 * math.pi * 1.5, rel=1e-3)
     assert np.ptp(lengths) < 1e-6
     np.testing.assert_allclose(pieces[-1, 1], pieces[0, 0], atol=1e-6)
+    assert not any(name.visible for name, _ in watch.names)
+    wide = 1.01 * LABELLED * extent(frame.params)
+    watch.show(frame._replace(offset=wide))
+    for name, height in watch.names:
+        assert name.visible
+        np.testing.assert_allclose(name.position, (3.0 + wide, -2.0, height))
+    watch.show(frame._replace(offset=wide, params=dataclasses.replace(frame.params, watch=False)))
+    assert not any(name.visible for name, _ in watch.names)
     watch.remove()
+
+
+def test_a_staff_beside_the_body_is_as_high_as_the_waves(server: Any, scene: MooringScene) -> None:
+    frame, waves = scene.frame(), WaveHeight(server)
+
+    def show(height: float) -> None:
+        waves.show(frame._replace(params=dataclasses.replace(frame.params, wave_height=height)))
+
+    show(0.0)
+    assert waves.staff is None
+    for height in (2.0, 12.0):
+        show(height)
+        assert waves.staff is not None
+        bands = waves.staff.handles[0]
+        low, high = np.array(bands.batched_positions)[[0, -1], 2]
+        assert low <= -1.5 * height
+        assert 2.0 * height <= high + bands.vertices[:, 2].max() < 3.0 * height
+        same = waves.staff
+        show(height)
+        assert waves.staff is same
+    show(0.0)
+    assert waves.staff is None

@@ -14,12 +14,12 @@ from viser._messages import SetOrientationMessage, SetPositionMessage
 from app.formats.formatting import number
 from app.formats.round_step import round_step
 from app.render.material import blend
+from app.render.staff import UPRIGHT_SIDES, upright
 from app.scenes.square_sea import rain_view
 from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams
 from app.scenes.square_sea.quantities import here
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import (
-    GAUGE_SIDES,
     MAX_RIPPLE_SLOPE,
     OVERCAST_DEEP,
     OVERCAST_FROM,
@@ -27,7 +27,6 @@ from app.scenes.square_sea.view import (
     SPAR_TOP,
     SquareSeaView,
     WaveGaugeMesh,
-    upright,
 )
 
 
@@ -51,9 +50,9 @@ def test_float_and_spar_of_the_gauge_are_cylinders() -> None:
     vertices, faces = upright(0.4, -1.0, 2.0)
     mesh = trimesh.Trimesh(vertices, faces)
     assert mesh.is_watertight
-    half_step = math.pi / GAUGE_SIDES
-    assert mesh.volume == pytest.approx(3.0 * GAUGE_SIDES * 0.4**2 * math.sin(half_step) * math.cos(half_step))
-    assert np.hypot(*vertices[: 2 * GAUGE_SIDES, :2].T) == pytest.approx(0.4)
+    half_step = math.pi / UPRIGHT_SIDES
+    assert mesh.volume == pytest.approx(3.0 * UPRIGHT_SIDES * 0.4**2 * math.sin(half_step) * math.cos(half_step))
+    assert np.hypot(*vertices[: 2 * UPRIGHT_SIDES, :2].T) == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize(("clouds", "share"), [(0.0, 0.0), (OVERCAST_FROM, 0.0), (1.0, 1.0)])

@@ -140,7 +140,7 @@ def answer(port: int, path: str) -> tuple[int, str]:
     return found.status, found.getheader("Access-Control-Allow-Origin", "")
 
 
-def test_a_served_lab_with_path_origin_and_key() -> None:
+def test_a_served_lab_with_path_origin_and_key(capsys: pytest.CaptureFixture[str]) -> None:
     server = open_server("127.0.0.1", 0, Access("/lab", (HUB,), KEY)).server
     try:
         port = server.get_port()
@@ -151,6 +151,13 @@ def test_a_served_lab_with_path_origin_and_key() -> None:
             with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
                 coroutines.run(say(port, [], HUB, path))
             assert refusal.value.response.status_code in (403, 404)
+        said = capsys.readouterr().err
+        assert [line for line in said.splitlines() if line.startswith("springtide: ")] == [
+            "springtide: refused a page outside of /lab/, where --base-path puts the lab",
+            "springtide: refused a page without the key. Open the address that was printed at the start, or start the "
+            "lab without SPRINGTIDE_KEY",
+        ]
+        assert KEY not in said
     finally:
         server.stop()
 

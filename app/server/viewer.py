@@ -87,8 +87,7 @@ class Viewer:
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.preparation = Preparation(self.server, self.compiling, say, ahead=compile_ahead)
-        self.port = self.server.get_port()
-        self.changes = SceneSwitches()
+        self.port, self.changes = self.server.get_port(), SceneSwitches()
         self.ended = False
         self.came = threading.Event()  # set when a browser connects, or the lab ends
         self.current: ServedScene | None = None  # the last scene opened; it may be closed

@@ -273,11 +273,11 @@ class SceneSettings:
             return f"{way} {in_words(settings.scene)}"
         if settings.preset != self.loaded:
             return f"{settings.words}, {way} {settings.preset}"
-        changed = changed_names(self.params, settings.params)
-        if len(changed) != 1:
+        changed, parameters = changed_names(self.params, settings.params), parameters_of(self.params)
+        if len(changed) != 1 or not parameters.keys() >= set(changed):  # numbers of a file have no control
             return settings.words
         (name,) = changed
-        value = value_in_words(parameters_of(self.params)[name], getattr(settings.params, name))
+        value = value_in_words(parameters[name], getattr(settings.params, name))
         return f"{settings.words}, {way} {value}"
 
     def take(self, command: Take, preset: str) -> None:

@@ -110,8 +110,8 @@ CALLS = (
     call(floating.step, fleet=FLEET, water=floating.still_water(FLEET), duration=0.01),
     call(floating.still_water, fleet=FLEET), call(floating.lowest, fleet=FLEET), call(floating.vertices, fleet=FLEET),
     # values of waves are checked by the step that takes them, once for all
-    call(floating.make_water, ("height", "acceleration", "interface", "interface_rise"), fleet=FLEET, layers=STILL,
-         height=np.zeros(1)),
+    call(floating.make_water, ("height", "acceleration", "interface", "interface_rise", "yaw"), fleet=FLEET,
+         layers=STILL, height=np.zeros(1)),
     call(floating.pull, fleet=FLEET, body=0, point=ORIGIN, target=ORIGIN, limit=1.0),
     call(floating.with_dataset, ("body",), hull=BOX, path="none.nc"),
     call(rainfall, rate=1.0), call(terminal_speed, diameter=1e-3), call(flame_height, power=1e6, diameter=1.0),

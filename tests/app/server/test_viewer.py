@@ -159,10 +159,10 @@ def picky(monkeypatch: pytest.MonkeyPatch) -> None:
     """A rope that cannot be built with one stiffness."""
     build = rope_scene.build
 
-    def build_or_not(params: Any, *places: Any) -> Any:
+    def build_or_not(params: Any, *places: Any, **touch: Any) -> Any:
         if params.stiffness == 1234.0:
             raise ValueError("stiffness: 1234 is not allowed; allowed: another one")
-        return build(params, *places)
+        return build(params, *places, **touch)
 
     monkeypatch.setattr(rope_scene, "build", build_or_not)
 

@@ -152,7 +152,7 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
 
 
 class Sky:
-    """The sky over a sea, with stars in clear nights, which are always the same."""
+    """The sky over a sea; a clear night has stars, in the same places every night."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server

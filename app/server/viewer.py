@@ -87,7 +87,8 @@ class Viewer:
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.preparation = Preparation(self.server, self.compiling, say, ahead=compile_ahead)
-        self.port, self.changes = self.server.get_port(), SceneSwitches()
+        self.port = self.server.get_port()
+        self.changes = SceneSwitches()
         self.ended = False
         self.came = threading.Event()  # set when a browser connects, or the lab ends
         self.current: ServedScene | None = None  # the last scene opened; it may be closed
@@ -95,9 +96,8 @@ class Viewer:
         self.changing = threading.Lock()
         self.requests = SceneRequests()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
-        gui = self.server.gui
-        set_theme(gui, dark=False)
-        gui.set_panel_label("Springtide")
+        set_theme(self.server.gui, dark=False)
+        self.server.gui.set_panel_label("Springtide")
         # A browser may be there already. It holds nothing: the command wakes a lab that was alone.
         self.server.on_client_connect(self.release)
         self.server.on_client_disconnect(self.release)

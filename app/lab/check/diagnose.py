@@ -31,7 +31,7 @@ from app.lab.check.comparing import (
 )
 from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.conditions import conditions_of
-from app.lab.check.diagnosis.explanation import Explanation
+from app.lab.check.diagnosis.explanation import Explanation, says_repair
 from app.lab.check.diagnosis.steps import explain_step
 from app.lab.check.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
 from app.lab.check.diagnosis.units import clashes, units_of
@@ -215,7 +215,7 @@ def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -
     before, _, line = shown[0]
     if condition:
         how = f"It is right if the condition {before} in line {line} {condition} holds."
-    elif cause.endswith("it is right."):
+    elif says_repair(cause):
         return Explanation("", cause, line=line)
     else:
         parts = [

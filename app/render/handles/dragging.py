@@ -69,10 +69,11 @@ class GrabLine:
         if is_at_limit is not self.is_at_limit:
             self.is_at_limit = is_at_limit
             self.line.colors = np.array(LIMIT_COLOUR if is_at_limit else GRAB_COLOUR, np.uint8)
-        if is_at_limit and self.words is None:
-            self.words = self.server.scene.add_label(f"{self.name}/limit", "", anchor="bottom-center")
-        if self.words is not None:
+            if self.words is None:
+                self.words = self.server.scene.add_label(f"{self.name}/limit", "", anchor="bottom-center")
             self.words.visible = is_at_limit
-            if is_at_limit:
-                self.words.text = f"{number(force)} N: the largest mouse force"
-                self.words.position = np.asarray(ends[1], float)
+        if is_at_limit and self.words is not None:
+            text = f"{number(force)} N: the largest mouse force"
+            if self.words.text != text:
+                self.words.text = text
+            self.words.position = np.asarray(ends[1], float)

@@ -135,7 +135,7 @@ class RefusedPages:
             self.say(f"refused a page at {option.split()[1]}. If it is yours, start the lab with {option}")
 
     def report_path(self, access: Access, response: Response) -> None:
-        """Print that a page was refused by its path, and which path is right. The key itself is not printed."""
+        """Print that a page without the key or outside of the lab's path was refused, and the cure, without the key."""
         if response.status_code == HTTPStatus.FORBIDDEN:
             self.say(
                 "refused a page without the key. Open the address that was printed at the start, or start the lab "

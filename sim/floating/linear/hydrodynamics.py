@@ -71,10 +71,10 @@ class PlaneForce(NamedTuple):
 
 
 class LongWaveForce(NamedTuple):
-    """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull, to the first order of k for each.
+    """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull.
 
-    X = rise + w^2/g lift + i (kx run[0] + ky run[1]), at unit density and gravity; w^2/g is k in deep water. The twist
-    of the surface adds the yaw moment kx ky twist, which for a hull of two equal sides is the first.
+    X = rise + w^2/g lift + i (kx run[0] + ky run[1]) to first order of k, at unit density and gravity; w^2/g is k in
+    deep water. The yaw moment also has the term kx ky twist: the only one of a hull with two equal sides.
     """
 
     rise: np.ndarray

@@ -2,9 +2,9 @@
 
 A link stores k/2 depth^2 at its place that is nearest to the sphere's centre, a part s of it from its first point, 0 to
 1. The force goes to the ends by (1 - s, s): momentum and angular momentum stay. It is continuous as s leaves 0 or 1.
-Such a rope's points have no contact of their own with the sphere. One that two links touch at has the force of both. A
-flat floor touches a capsule at its ends, so that there the contact of points is that of links. Friction acts at the
-points (`sim.springs.forces.friction`).
+The points of such a rope do not touch the sphere themselves; where two links touch it at their common point, both
+push that. A flat floor touches a capsule at its ends, so that there the contact of points is that of links. Friction
+acts at the points (`sim.springs.forces.friction`).
 """
 
 import math
@@ -84,7 +84,7 @@ def damp_links(link, x, v, a, mean, t, s, p, reverse):
 def damp_kicked(x, v, a, mean, t, s, p, reverse):
     """Normal damping in a kick for a time s [s] by the accelerations a, after these have changed v: link by link.
 
-    Of each link by itself kick and damping together are exact, and so is the mean velocity, if there is room for it:
+    For one link kick and damping together are exact at its depth, and so is the mean velocity, if there is room for it:
     the place of contact follows v' = pull - b w v from its velocity before the kick, w its mobility. One order of the
     links and its reverse are adjoint to each other. Returns the work [J] of a moving sphere.
     """
@@ -93,7 +93,7 @@ def damp_kicked(x, v, a, mean, t, s, p, reverse):
 
 @kernel(noalias=True, allocates=False)
 def damp(x, v, t, s, p, reverse):
-    """Normal damping alone for a time s [s], link by link: exact of each. Returns the work [J] of a moving sphere."""
+    """Normal damping alone for a time s [s], link by link, exact for one. Returns the work [J] of a moving sphere."""
     return damp_kicked(x, v, v[:0], v[:0], t, s, p, reverse)
 
 

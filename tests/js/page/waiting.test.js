@@ -60,7 +60,7 @@ test("of two presets the last one is waited for, and a run that ends otherwise e
   assert.equal(page.look(700), false);
 });
 
-test("another scene has a cover, and the veil does not stay for ever", () => {
+test("another scene has a cover, and the veil goes after a minute in any case", () => {
   const page = new Page();
   page.look(0);
   page.runs.awaited = "2";

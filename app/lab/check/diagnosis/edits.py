@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
+from app.lab.check.diagnosis.explanation import says_repair
 from app.lab.check.diagnosis.units import clashes
 
 # Kinds of edits, the most likely first: a named cause, less text, a fixed condition, another text, more text.
@@ -68,9 +69,10 @@ class EditWords(NamedTuple):
 
     @property
     def is_clear(self) -> bool:
-        """True if a sentence can name the change: each text is one line, or the cause is complete."""
-        says_all = self.cause.endswith("it is right.")
-        return says_all or not any("\n" in text for one in self.shown for text in (one.before, one.after))
+        """True if a sentence can name the change: each text is one line, or the cause says the repair."""
+        return says_repair(self.cause) or not any(
+            "\n" in text for one in self.shown for text in (one.before, one.after)
+        )
 
 
 class Tree:

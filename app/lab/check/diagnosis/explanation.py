@@ -40,3 +40,8 @@ class Explanation(NamedTuple):
     form: Callable[..., Any] | None = None
     is_vague: bool = False  # it says little about the correction
     line: int = 0
+
+
+def says_repair(cause: str) -> bool:
+    """True if the sentence of a cause says the repair, too."""
+    return cause.endswith("it is right.")

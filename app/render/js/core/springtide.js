@@ -4,7 +4,8 @@
 // (before/connection.js): the number of messages heard and of beats, the time [s] to wait for a large message on its way,
 // whether it is open, close(), and hurry(time [ms]), which shortens the attempt to connect. isRecording: true while a clip is
 // recorded. awaitPicture(): the scene is another one. showsWhole(): true if the canvas shows its complete picture
-// (page/cover.js). isWhole: true once the first picture of the scene was complete; areWhole(): the same of all frames (beside.html). quality, memory, skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
+// (page/cover.js). isWhole: true once the first picture of the scene was complete; areWhole(): the same of all frames
+// (beside.html). quality, memory, skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
 
 /** @type {Springtide} */
 export const springtide = (globalThis.__springtide ??= {});

@@ -14,8 +14,8 @@ export class Waiting {
 
   // True if the shown picture is old and the page says so.
   //
-  // runs: name of the panel, whose scene has a cover of its own; number of the requested run; number of the shown run. isWhole():
-  // the picture is complete. begin(): only frames that begin from now on count.
+  // runs: the panel, as another scene has a cover instead, and the numbers of the requested and of the shown run. isWhole(): the
+  // picture is complete. begin(): only frames that begin from now on count.
   /** @param {number} now [ms] @param {Runs} runs @param {() => boolean} isWhole @param {() => void} begin */
   look(now, { panel, awaited, placed }, isWhole, begin) {
     if (panel !== this.#panel) [this.#panel, this.#awaited, this.#since, this.#isDrawing] = [panel, awaited, -Infinity, false];

@@ -193,7 +193,7 @@ def own_power(net, x, v, t, h):
 
 
 def drawn_along(net, col):
-    """A rope of which only this point is pinned, and moves."""
+    """A rope with one pinned point, which moves."""
     path = PATH._replace(coefficients=(tuple(net.x0[:, 0, col].tolist()), *PATH.coefficients[1:]))
     return dataclasses.replace(net, pinned=frozenset({(0, col)}), pin_paths=(((0, col), path),))
 

@@ -1,6 +1,7 @@
 """Motions for the checks of integration methods: a random law of acceleration, and an oscillator."""
 
-from collections.abc import Callable
+import functools
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -33,15 +34,26 @@ def step_inputs(rng: "np.random.Generator", *, with_velocity: bool = True) -> tu
 def oscillate(step: Callable[..., Any], z: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
     """Position and velocity after each step of an oscillator of 1 rad/s that starts at x = 1, at rest.
 
-    z: time step times angular frequency. Returns two arrays of shape (steps,).
+    step: also a student's, whose process makes the steps. z: time step times angular frequency. Returns two arrays of
+    shape (steps,).
     """
     x, v = np.array([[1.0, 0.0, 0.0]]), np.zeros((1, 3))
-    rows = []
-    for _ in range(steps):
-        x, v = step(x, v, z, oscillator)
-        rows.append((x[0, 0], v[0, 0]))
-    positions, velocities = np.array(rows).T
+    following = getattr(step, "steps_of_oscillator", None) or functools.partial(steps_of_oscillator, step)
+    positions, velocities = np.array([(x[0, 0], v[0, 0]) for x, v in following(x, v, z, steps)]).T
     return positions, velocities
+
+
+def steps_of_oscillator(step: Callable[..., Any], x: Any, v: Any, z: float, steps: int) -> Iterator[Any]:
+    """The results of the steps of an oscillator, each from that before.
+
+    Ends at a result that is no pair of arrays of shape (1, 3).
+    """
+    for _ in range(steps):
+        state = step(x, v, z, oscillator)
+        yield state
+        if not (isinstance(state, tuple | list) and [np.shape(part) for part in state] == [(1, 3), (1, 3)]):
+            return
+        x, v = state
 
 
 def amplitudes(step: Callable[..., Any], z: Any) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.lab.check.comparing import call, conform, has, same
 from app.lab.check.diagnosis.units import units_of
+from app.lab.check.oscillator import oscillator
 from app.lab.checking import Wrong
 from app.lab.course.task import Task
 from app.lab.process.call_limit import MAX_WAIT
@@ -58,21 +59,49 @@ class StudentFunction:
         """
         done, ahead = 0, FIRST_SERIES
         while done < len(samples):
-            self.check_time()
-            part, before = samples[done : done + ahead], self.runner.effort
-            self.sample = part[0]  # a call that fails is the first of its series
-            values = self.values(part, max(twice - done, 0))
-            if not self.is_warm:  # it may have imported or compiled, for which it is not charged
-                self.effort += self.runner.effort - before
-            self.is_warm = True
+            part = samples[done : done + ahead]
+            with self.measured(part[0]):
+                values = self.values(part, max(twice - done, 0))
             for sample, value in zip(part, values, strict=False):
-                self.sample, right = sample, self.reference(*sample)
-                found = conform(value, right)
-                self.last = Trial(sample, found, right)
-                if not self.takes_all and (error := self.not_finite(self.last)) is not None:
-                    raise error
-                yield found, right
+                yield self.in_form(sample, value)
             done, ahead = done + len(values), SERIES_GROWTH * ahead
+
+    def steps_of_oscillator(self, x: np.ndarray, v: np.ndarray, z: float, steps: int) -> Iterator[Any]:
+        """The results of steps of an oscillator, each from that before. Raises RunError or Wrong."""
+        done = 0
+        while done < steps:
+            with self.measured((x, v, z, oscillator)):
+                values = self.steps(self.sample, steps - done)
+            for value in values:
+                (x, v), _ = self.in_form((x, v, z, oscillator), value)
+                yield x, v
+            done += len(values)
+
+    def steps(self, sample: tuple[Any, ...], steps: int) -> list[Any]:
+        """The first results of steps, at least one, as the process sends them. Raises RunError."""
+        if self.is_watched:
+            return self.series("oscillate", steps, [sample[:-1]], steps)
+        return self.values([sample])
+
+    @contextlib.contextmanager
+    def measured(self, sample: tuple[Any, ...]) -> Iterator[None]:
+        """Measures the time of a series of calls that starts at a sample. Raises RunError after too long a time."""
+        self.check_time()
+        before = self.runner.effort
+        self.sample = sample  # a call that fails is the first of its series
+        yield
+        if not self.is_warm:  # it may have imported or compiled, for which it is not charged
+            self.effort += self.runner.effort - before
+        self.is_warm = True
+
+    def in_form(self, sample: tuple[Any, ...], value: Any) -> tuple[Any, Any]:
+        """A result in the form of the reference's, beside that one. Raises Wrong."""
+        self.sample, right = sample, self.reference(*sample)
+        found = conform(value, right)
+        self.last = Trial(sample, found, right)
+        if not self.takes_all and (error := self.not_finite(self.last)) is not None:
+            raise error
+        return found, right
 
     def check_time(self) -> None:
         """Raises RunError after more time than a task may take."""
@@ -109,13 +138,13 @@ class StudentFunction:
         At least one; a later call that fails is not among them. twice: as of `results`.
         """
         if self.is_watched:
-            return self.series("watch", twice, samples)
+            return self.series("watch", twice, samples, len(samples))
         return [self.runner.call(self.task.file, self.task.name, *samples[0])]
 
-    def series(self, kind: str, which: int, samples: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """The answer to a message of the check with a number and inputs. Raises RunError."""
+    def series(self, kind: str, which: int, samples: Sequence[tuple[Any, ...]], most: int) -> list[Any]:
+        """The answer to a message of the check with a number and inputs. most: results. Raises RunError."""
         answer = self.ask(kind, which, [list(sample) for sample in samples])
-        if not isinstance(answer, list) or not 1 <= len(answer) <= len(samples):
+        if not isinstance(answer, list) or not 1 <= len(answer) <= most:
             self.runner.close()
             raise RunError("ended", f"{self.task.name} wrote into the lab's pipe", self.task.file)
         return answer
@@ -151,7 +180,7 @@ class EditedFunction(StudentFunction):
 
     def values(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> list[Any]:
         """As of `StudentFunction`."""
-        return self.series("edited", self.number, samples)
+        return self.series("edited", self.number, samples, len(samples))
 
 
 def special_cases(

@@ -16,6 +16,7 @@ import numpy as np
 from app.lab.check.diagnosis.causes import causes, late_causes, traps
 from app.lab.check.diagnosis.edits import Candidate, Tree, more_slips, slips
 from app.lab.check.diagnosis.effects import copied, state_of, watched
+from app.lab.check.oscillator import steps_of_oscillator
 from app.lab.process.student_modules import StudentModules
 
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
@@ -44,11 +45,13 @@ class CheckedCalls:
             return self.edits_in_words(*arguments)
         if kind == "watch":
             return self.watch(file, function, *arguments)
+        if kind == "oscillate":
+            return self.oscillate(file, function, *arguments)
         with self.solved([self.modules.loaded[file], *self.modules.others(file)], function):
             if kind == "edits":
                 return self.try_edits(file, function, *arguments)
             number, samples = arguments
-            return series(lambda _, sample: self.try_edit(file, self.edits[number][1], sample), samples)
+            return series(self.try_edit(file, self.edits[number][1], sample) for sample in samples)
 
     @contextlib.contextmanager
     def solved(self, modules: list[ModuleType], function: str) -> Iterator[None]:
@@ -76,6 +79,21 @@ class CheckedCalls:
 
         twice: number of calls that are compared with a second one.
         """
+        with self.without_effects(file, function) as call:
+            return series(call(sample, twice=i < twice) for i, sample in enumerate(samples))
+
+    def oscillate(self, file: str, function: str, steps: int, samples: list[list[Any]]) -> list[Any]:
+        """The results of steps without side effects, each from that before, as of `series`. Raises Effect.
+
+        samples: position and velocity of an oscillator, and the time step.
+        """
+        with self.without_effects(file, function) as call:
+            x, v, z = samples[0]
+            return series(steps_of_oscillator(lambda *sample: call(sample, twice=False), x, v, z, steps))
+
+    @contextlib.contextmanager
+    def without_effects(self, file: str, function: str) -> Iterator[Callable[..., Any]]:
+        """Gives the result of a function at arguments; a call with a side effect raises Effect."""
         module, others = self.modules.loaded[file], self.modules.others(file)
         if file not in self.states:
             self.states[file] = state_of([module])
@@ -87,12 +105,12 @@ class CheckedCalls:
         target, modules = plain(getattr(module, function)), [module, *others]
         if state_of([module]) != self.states[file]:  # an earlier call has changed something
             target, modules = anew()
-
-        def call(i: int, sample: list[Any]) -> Any:
-            return watched(target, modules, sample, self.modules.folder, anew, twice=i < twice)
-
         with self.solved(modules, function):
-            return series(call, samples)
+            yield functools.partial(self.watched_call, target, modules, anew)
+
+    def watched_call(self, target: Any, modules: Any, anew: Any, sample: Sequence[Any], *, twice: bool) -> Any:
+        """As of `watched`, in this folder."""
+        return watched(target, modules, sample, self.modules.folder, anew, twice=twice)
 
     def try_edits(
         self, file: str, function: str, kind: str, names: list[str], conditions: list[str], arguments: list[Any]
@@ -145,21 +163,16 @@ class CheckedCalls:
             return watched(target, [module], arguments, self.modules.folder, lambda: (target, [module]), twice=False)
 
 
-def series(call: Callable[[int, list[Any]], Any], samples: Sequence[list[Any]]) -> list[Any]:
-    """Results of the first calls of a series, at least one. Raises the error of the first call.
+def series(results: Iterator[Any]) -> list[Any]:
+    """The first results of a series of calls, at least one. Raises the error of the first call.
 
-    call: takes number and arguments. A later call that fails ends the series: the lab sends it again, as the first.
+    A later call that fails ends the series: the lab sends it again, as the first.
     """
-    end, found = time.process_time() + SERIES_TIME, list[Any]()
-    for i, sample in enumerate(samples):
-        try:
-            found.append(call(i, sample))
-        except BaseException:
-            if i == 0:
-                raise
-            break
-        if time.process_time() > end:
-            break
+    end = time.process_time() + SERIES_TIME
+    found = [next(results)]
+    with contextlib.suppress(BaseException):
+        while time.process_time() <= end:
+            found.append(next(results))
     return found
 
 

@@ -9,8 +9,10 @@ compiles those of a rope for that, and with `["table", file, function, [columns,
 at many arguments (`tabulate.py`). Printed lines are counted and dropped: the pipes belong to the lab.
 
 `["watch", file, function, [twice, samples]]` calls a function at several arguments, and fails where it has a side
-effect (`checked_calls.py`, `diagnosis/effects.py`). `["edits", file, function, [kind, names, conditions, arguments]]`
-calls its edits, `["words", file, function, [numbers, units, clashes]]` describes some of them, and
+effect (`checked_calls.py`, `diagnosis/effects.py`). `["oscillate", file, function, [steps, samples]]` does so with
+steps of an oscillator, each from that before (`check/oscillator.py`).
+`["edits", file, function, [kind, names, conditions, arguments]]` calls a function's edits,
+`["words", file, function, [numbers, units, clashes]]` describes some of them, and
 `["edited", file, function, [number, samples]]` calls one of them (`diagnosis/edits.py`).
 `["course", "", "", {name: text}]` has no answer: while a function is watched, these solutions stand in for the
 functions of the course that it calls, and `["called", file, function, []]` tells which it has called.
@@ -56,7 +58,7 @@ from app.lab.process.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
-CHECKS = ("watch", "edits", "words", "edited", "called")  # messages of the check
+CHECKS = ("watch", "oscillate", "edits", "words", "edited", "called")  # messages of the check
 LOOK_AT_PARENT = 1.0  # [s] between two checks that the lab still runs
 PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on its place and processor time
 

@@ -14,7 +14,7 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any, NamedTuple, TypeAlias
@@ -26,6 +26,7 @@ EFFECTS = (ARGUMENT, STATE, SETTING, FILE)  # kinds, which are the names of the 
 SAME_RESULT = 1e-9  # of the largest value, by which two results of equal calls may differ
 MAX_DEPTH = 6  # of nested values that are compared
 MAX_CODE = 70  # characters of a shown line
+VARIABLES = ("os.putenv", "os.unsetenv")  # audit events
 WRITES = frozenset(("os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.truncate"))  # audit events beside "open"
 RANDOM = ("numpy's random numbers", "Python's random numbers")
 SETTINGS = frozenset((
@@ -83,7 +84,7 @@ def watched(
     given = copied(arguments)
     before = [digest(value) for value in given]
     state = state_of(modules) | settings()
-    with restored(), WRITTEN.noted(folder) as files:
+    with restored(), AUDIT.written(folder) as files:
         value = function(*given)
         after = state_of(modules) | settings()
     names = names_of(function, len(given))
@@ -239,6 +240,7 @@ def digest(value: Any, folder: str = "", depth: int = MAX_DEPTH) -> Any:
     return id(value)
 
 
+@lru_cache(1024)
 def is_own(kind: type, folder: str) -> bool:
     """True for a class of a file in a folder."""
     file = getattr(sys.modules.get(kind.__module__), "__file__", None) or ""
@@ -294,7 +296,7 @@ def settings() -> dict[str, Any]:
         "numpy's error handling": tuple(np.geterr().values()),
         "numpy's print options": repr(np.get_printoptions()),
         "the working folder": os.getcwd(),
-        "the environment variables": hash(frozenset(os.environ.items())),
+        "the environment variables": AUDIT.environment(),
         "Python's recursion limit": sys.getrecursionlimit(),
         "the module search path": tuple(sys.path),
     }
@@ -361,21 +363,33 @@ def place_of(frame: FrameType) -> CodeLine:
 Written: TypeAlias = list[tuple[str, CodeLine | None]]
 
 
-class WrittenFiles:
-    """Notes the files that a student's function writes, by a permanent audit hook."""
+class Audit:
+    """Notes the files that a student's function writes, and changes of the environment, by a permanent audit hook."""
 
     def __init__(self) -> None:
         self.found: Written | None = None
         self.has_hook = False
         self.thread = 0
         self.folder = ""
+        self.variables: int | None = None  # hash of the environment variables; None after a change
 
-    @contextlib.contextmanager
-    def noted(self, folder: Path) -> Iterator[Written]:
-        """Path and line of each file that this thread writes in a `with` block."""
+    def listen(self) -> None:
+        """Set the hook, once."""
         if not self.has_hook:
             sys.addaudithook(self.note)
             self.has_hook = True
+
+    def environment(self) -> int:
+        """Hash of the environment variables, which are read again after a change only: that takes long."""
+        self.listen()
+        if self.variables is None:
+            self.variables = hash(frozenset(os.environ.items()))
+        return self.variables
+
+    @contextlib.contextmanager
+    def written(self, folder: Path) -> Iterator[Written]:
+        """Path and line of each file that this thread writes in a `with` block."""
+        self.listen()
         found: Written = []
         self.found, self.thread, self.folder = found, threading.get_ident(), str(folder)
         try:
@@ -384,7 +398,9 @@ class WrittenFiles:
             self.found = None
 
     def note(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Note an event that writes a file."""
+        """Note an event that writes a file or changes the environment."""
+        if event in VARIABLES:
+            self.variables = None
         if self.found is None or threading.get_ident() != self.thread or not (event == "open" or event in WRITES):
             return
         path, *how = arguments
@@ -402,4 +418,4 @@ def is_writing(mode: str | None, flags: int) -> bool:
     return bool(flags & (os.O_WRONLY | os.O_RDWR)) or any(sign in (mode or "") for sign in "wax+")
 
 
-WRITTEN = WrittenFiles()
+AUDIT = Audit()

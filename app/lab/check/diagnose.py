@@ -38,7 +38,7 @@ from app.lab.check.diagnosis.units import clashes, units_of
 from app.lab.check.inputs import RANDOM, SEED, Sample
 from app.lab.check.python_errors import in_plain_words
 from app.lab.check.student_function import TASK_LIMIT, EditedFunction, StudentFunction, Trial
-from app.lab.checking import Wrong
+from app.lab.checking import Counted, Wrong
 from app.lab.process.runner import RunError
 
 TERM_SAMPLES = 16  # random inputs at which terms are compared
@@ -48,6 +48,7 @@ SMALLER = 1e-3  # of an argument, at which a result that seems not to depend on 
 MAX_REPAIRS = 20  # that are right at one input and are tried at the others
 EDITS_LIMIT = 2.0  # [s] for all edits of a kind
 MANY = 4  # further texts that may stand at a place, from where on what stands there has no effect
+LESS = 4.0  # ratio of the errors of a sum of steps, at least, at a tenth of its steps
 NEARLY = 0.05  # of the largest value of a result, within which it is nearly right
 UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results without a test of behaviour
 OTHER_SHAPE = "for other numbers of points its results have the wrong shape"
@@ -312,6 +313,8 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
         raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
     found = differences.explain_where(compared, names, part_names(student, trials), ())
+    if text := other_calls(student, wrong) or steps_in_sum(student, trials):
+        return found._replace(text=f"{text} {found.text}")
     if (error := nearly(trials[:RANDOM])) is not None:
         text = f"At ordinary inputs it differs by at most {100.0 * error:.2g} %: a rounded number, or too large a step?"
         return found._replace(text=f"{text} {found.text}")
@@ -326,6 +329,53 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
                 failed.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {shown_last(student) or found.text}"
             )
     return found
+
+
+def other_calls(student: StudentFunction, trial: Trial) -> str:
+    """A sentence on a step that calls the acceleration more or less often than the solution does; "" of others.
+
+    Raises RunError.
+    """
+    if not hasattr(student.task.check, "METHOD"):
+        return ""
+    *state, acceleration = trial.sample
+    own, right = Counted(acceleration), Counted(acceleration)
+    student.values([(*state, own)])
+    student.reference(*state, right)
+    numbers = [f"{n} time{'' if n == 1 else 's'}" for n in (len(own.calls), len(right.calls))]
+    if numbers[0] == numbers[1]:
+        return ""
+    return f"It calls {student.task.arguments[-1]} {numbers[0]} in this step, the solution of the course {numbers[1]}."
+
+
+def steps_in_sum(student: StudentFunction, trials: Sequence[Trial]) -> str:
+    """A sentence on a function whose error falls with the length of its own steps; "" of others. Raises RunError."""
+    wrong = [trial for trial in trials[:RANDOM] if not trial.is_right]
+    if not wrong or student.runner.effort - student.effort > TASK_LIMIT / 2.0:
+        return ""
+    try:
+        edits = student.ask("edits", "finer steps", student.task.arguments, [], wrong[0].sample, time_limit=EDITS_LIMIT)
+        words = student.ask("words", [number for number, _ in edits], [], MANY)
+        before = max(map(error_of, wrong))
+        for number, _, _, _, [(old, new, line)] in words:
+            finer = EditedFunction(student, number)
+            after = max(error_of(trial) for trial in finer.trials([trial.sample for trial in wrong]))
+            if after * LESS <= before:
+                return (
+                    f"Its largest error is {100.0 * before:.2g} % with {old} in line {line}, and {100.0 * after:.2g} % "
+                    f"with {new} there: an error of finite steps. Use the formula instead."
+                )
+    except (RunError, Wrong):  # an edit that does not end, or has another result
+        return ""
+    return ""
+
+
+def error_of(trial: Trial) -> float:
+    """The largest error of a result, relative to the largest number of its part."""
+    return max(
+        float(np.abs(a - b).max(initial=0.0) / (np.abs(b).max(initial=0.0) or 1.0))
+        for a, b in zip(parts(trial.found), parts(trial.right), strict=True)
+    )
 
 
 def shown_last(student: StudentFunction) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.diagnosis.causes import causes, late_causes, traps
+from app.lab.check.diagnosis.causes import causes, finer_steps, late_causes, traps
 from app.lab.check.diagnosis.edits import Candidate, Tree, more_slips, slips
 from app.lab.check.diagnosis.effects import copied, state_of, watched
 from app.lab.check.oscillator import steps_of_oscillator
@@ -22,7 +22,12 @@ from app.lab.process.student_modules import StudentModules
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
 SERIES_TIME = 0.1  # [s] of processor time, after which a series of calls is answered before its end
 SLIPS = "slips"
-EDITS = {"traps": traps, "causes": causes, "more slips": more_slips}  # kinds of edits beside `SLIPS`
+EDITS = {
+    "traps": traps,
+    "causes": causes,
+    "more slips": more_slips,
+    "finer steps": finer_steps,
+}  # kinds of edits beside `SLIPS`
 
 
 class CheckedCalls:

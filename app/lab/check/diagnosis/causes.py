@@ -53,6 +53,7 @@ OF_NUMBERS = (
     "sqrt", "cbrt", "exp", "log", "sin", "cos", "tan", "arcsin", "arccos", "arctan", "floor", "norm", "sum",
     "tanh", "square",
 )  # fmt: skip
+FINER = 10  # by which a step is divided
 PLAIN_NUMBERS = (0.5, 1, 2, 3, 4, 6)  # factors of laws
 
 
@@ -438,6 +439,17 @@ def turns(tree: Tree) -> Iterator[Candidate]:
                 ends.append(("few", [last]))
             for word, arguments in ends:
                 yield Candidate(((call, call_of("range", *arguments)),), CAUSE, f"The loop has too {word} turns.")
+
+
+def finer_steps(tree: Tree) -> Iterator[Candidate]:
+    """A tenth of a number that is used in a loop, as the length of its steps; not of a power."""
+    turned = {part for loop in tree.of(ast.For, ast.While) for line in loop.body for part in ast.walk(line)}
+    used = {part.id for part in turned if isinstance(part, ast.Name)}
+    for node in tree.of(ast.Constant):
+        parent = tree.parent(node)
+        names = {getattr(target, "id", "") for target in getattr(parent, "targets", ())}
+        if is_number(node) and 0 < node.value < 1 and (node in turned or names & used):
+            yield Candidate(((node, ast.Constant(node.value / FINER)),), OTHER)
 
 
 def overwritten_arguments(tree: Tree) -> Iterator[Candidate]:

@@ -6,6 +6,7 @@ all inputs, is what the student has written. So are pairs of terms.
 """
 
 import itertools
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -17,6 +18,7 @@ from app.lab.check.diagnosis.factors import factor_text, is_simple
 
 TOLERANCE = 2e-5  # of the largest part of a result at an input: single precision is right too
 SMALL_CHANGE = 0.02  # of a constant, which is given in per cent
+FAR_FROM_ONE = 3.0  # decades of a factor, beyond which terms of a sum are not looked at
 EXPONENTS = (1.0, -1.0, 2.0, -2.0, 0.5, -0.5)
 FACTORS = {2.0: "twice {}", 0.5: "half of {}", -1.0: "-{}"}
 FAR_FETCHED = 3.0  # cost of a change of the whole result, above which an edit of the student's function is likelier
@@ -159,6 +161,13 @@ def explain_terms(
         return None
     if any(a.shape != b.shape or not np.isfinite([a, b]).all() for a, b in zip(found, results, strict=True)):
         return None
+    factor = factor_of_all(found, results)
+    if factor and abs(math.log10(abs(factor))) >= FAR_FROM_ONE:
+        text = f"Every result is {factor_text(factor)} times what it must be."
+        power = math.copysign(10.0 ** round(math.log10(abs(factor))), factor)
+        if not is_simple(factor) and abs(factor - power) <= SMALL_CHANGE * abs(power):
+            text = f"Every result is about {power:g} times what it must be: look for a unit, such as km in place of m."
+        return Explanation("constant factor", text, (), lambda *sample: factor * right_result(terms, sample))
     inputs = Inputs(names, samples, results, found)
     y = inputs.joined(found)
     values = values_of(terms, inputs)
@@ -185,6 +194,14 @@ def explain_terms(
         or (findings[0].unit.name == WHOLE and not is_plain and findings[0].cost >= FAR_FETCHED)
     )
     return Explanation(mistake, " ".join([text, *others]), tuple(lines), stated(findings, terms), is_vague)
+
+
+def factor_of_all(found: Sequence[np.ndarray], results: Sequence[np.ndarray]) -> float:
+    """The factor between all results of two functions, as precise as single precision; 0 if there is none."""
+    a, b = (np.concatenate([value.ravel() for value in values]) for values in (found, results))
+    largest = np.argmax(np.abs(b))
+    factor = float(a[largest] / b[largest]) if b[largest] else 0.0
+    return factor if (np.abs(a - factor * b) <= TOLERANCE * np.abs(factor * b)).all() else 0.0
 
 
 def stated(findings: Sequence[Finding], terms: Sequence[Term]) -> Function:

@@ -1,5 +1,6 @@
 """The checks of programming tasks: right solutions pass, wrong ones are refused and named."""
 
+import contextlib
 import inspect
 import itertools
 import subprocess
@@ -460,3 +461,49 @@ def test_a_step_of_third_order_with_four_evaluations_is_not_the_fourth() -> None
 )
 def test_the_form_of_a_result_is_told_in_words(value: object, text: str) -> None:
     assert form_of(value) == text
+
+
+LEAPFROG = """
+w = v + h / 2 * acceleration(x, v)
+y = x + h * w
+return {result}
+"""
+USUAL = "y, w + h / 2 * acceleration(y, w)"
+ODD = "[y] if abs(y[0, 0] + 0.1) < 0.2 and y.shape == (1, 3) else (y, w + h / 2 * acceleration(y, w))"
+
+
+@pytest.mark.parametrize("result", [USUAL, ODD])
+def test_steps_in_the_process_are_those_of_single_calls(desk: Desk, result: str) -> None:
+    task, messages = TASKS["step_leapfrog"], 0
+    (desk.folder / f"steps_{len(result)}.py").write_text(
+        HEAD + with_body(task, LEAPFROG.format(result=result)), "utf-8"
+    )
+    student = StudentFunction(desk.runner, replace(task, file=f"steps_{len(result)}.py"))
+    alone = StudentFunction(desk.runner, student.task, is_watched=False)
+    ask = student.ask
+
+    def counted(*arguments: Any) -> Any:
+        nonlocal messages
+        messages += 1
+        return ask(*arguments)
+
+    student.ask = counted
+    states = []
+    x, v = np.array([[1.0, 0.0, 0.0]]), np.zeros((1, 3))
+    for steps in (student.steps_of_oscillator(x, v, 0.3, 40), alone.steps_of_oscillator(x, v, 0.3, 40)):
+        states.append([])
+        with pytest.raises(Wrong, match="a list of 1 entry") if result == ODD else contextlib.nullcontext():
+            for state in steps:
+                states[-1].append(state)
+    np.testing.assert_array_equal(*states)
+    assert len(states[0]) == (4 if result == ODD else 40)
+    assert messages < 8
+
+
+def test_a_side_effect_of_a_late_step_is_found(desk: Desk) -> None:
+    task = TASKS["step_leapfrog"]
+    late = "global steps\nif y[0, 0] < 0 and len(y) == 1:\n    steps = 1\nreturn"
+    body = LEAPFROG.format(result=USUAL).replace("return", late)
+    verdict = verdict_of(desk, task, "steps = 0\n" + with_body(task, body))
+    assert verdict.mistake == "state kept between calls"
+    assert "it changes steps" in verdict.text

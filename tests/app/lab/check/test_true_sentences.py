@@ -22,7 +22,7 @@ from app.lab.check.diagnosis.effects import EFFECTS
 from app.lab.check.inputs import Watched, inputs_of
 from app.lab.check.program_check import check_exactly, check_program, compare, settled
 from app.lab.check.student_function import StudentFunction
-from app.lab.checking import Wrong
+from app.lab.checking import Counted, Wrong
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import RunError, Runner
 from tests.app.lab.solutions.audit_mistakes import MISTAKES
@@ -377,3 +377,82 @@ def test_no_sentence_about_functions_with_edits_at_random_is_untrue(runner: Runn
             if not is_true(runner, task, source, said):
                 untrue.append((source, said.mistake, str(said)))
     assert untrue == []
+
+
+SIMULATED = """
+x, v = np.array(x, float), np.array(v, float)
+dt = {dt}
+while x[2] > level or v[2] > 0:
+    x = x + dt * v
+    v[2] -= gravity * dt
+x[2] = level
+return x"""
+STEPS = re.compile(
+    r"Its largest error is (.+) % with (.+) in line (\d+), and (.+) % with (.+) there: an error of finite"
+)
+
+
+@pytest.mark.parametrize("dt", ["0.01", "0.001"])
+def test_an_error_of_finite_steps_is_that_of_the_function_with_both_steps(runner: Runner, dt: str) -> None:
+    task = TASKS["jet_landing"]
+    source = source_of(task, SIMULATED.format(dt=dt))
+    found = STEPS.search(str(judged(runner, task, source)))
+    assert found
+    before, old, line, after, new = found.groups()
+    assert old == dt
+    assert f"dt = {dt}" in source.splitlines()[int(line) - 1]
+    for step, error in ((old, before), (new, after)):
+        function = function_of(task, source.replace(f"dt = {dt}", f"dt = {step}"))
+        pairs = [(call(function, s), call(task.function, s)) for s in inputs_of(task.check, task.name)[:16]]
+        assert max(np.abs(a - b).max() / np.abs(b).max() for a, b in pairs) == pytest.approx(
+            0.01 * float(error), rel=0.05
+        )
+
+
+def test_a_small_number_of_another_kind_is_no_step(runner: Runner) -> None:
+    root = "np.sqrt(v[2] ** 2 + 2 * gravity * (x[2] - level) + 0.01)"
+    body = f"t = (v[2] + {root}) / gravity\nreturn (x + v * t) * [1, 1, 0]"
+    assert "finite steps" not in str(judged(runner, TASKS["jet_landing"], source_of(TASKS["jet_landing"], body)))
+
+
+SOLVER = """
+from scipy.integrate import solve_ivp
+n = x.size
+f = lambda t, y: np.concatenate([y[n:], acceleration(y[:n].reshape(-1, 3), y[n:].reshape(-1, 3)).ravel()])
+y = solve_ivp(f, (0, h), np.concatenate([x.ravel(), v.ravel()]), method="{method}").y[:, -1]
+return y[:n].reshape(-1, 3), y[n:].reshape(-1, 3)"""
+
+
+@pytest.mark.parametrize("method", ["RK45", "RK23"])
+@pytest.mark.parametrize(("name", "right"), [("step_rk4", "4 times"), ("step_euler", "1 time")])
+def test_a_step_of_a_solver_is_told_by_its_calls(runner: Runner, name: str, right: str, method: str) -> None:
+    task = TASKS[name]
+    source = source_of(task, SOLVER.format(method=method))
+    said = re.search(r"It calls acceleration (\d+) times in this step, the solution of the course (.+?)\.",
+                     str(judged(runner, task, source)))  # fmt: skip
+    assert said
+    assert said[2] == right
+    counts = set()
+    for *state, acceleration in inputs_of(task.check, name):
+        counted = Counted(acceleration)
+        function_of(task, source)(*state, counted)
+        counts.add(len(counted.calls))
+    assert int(said[1]) in counts
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("return 6.67e-11 * 5.97e24 * mass_ratio / (6371 * mass_ratio ** (1 / 3)) ** 2", "is about 1e+06 times"),
+        ("return 6.67e-11 * 5.97e27 * mass_ratio / (6371e3 * mass_ratio ** (1 / 3)) ** 2", "is about 1000 times"),
+        ("return 9.81e-9 * mass_ratio ** (1 / 3)", "is 1e-09 times"),
+        ("return -9.81e4 * mass_ratio ** (1 / 3)", "is -10000 times"),
+        ("return 3.1e5 * mass_ratio ** (1 / 3)", "is 31600.4 times"),
+    ],
+)
+def test_a_large_factor_is_that_of_all_results(runner: Runner, body: str, words: str) -> None:
+    said = judged(runner, TASKS["gravity"], source_of(TASKS["gravity"], body))
+    assert isinstance(said, Wrong)
+    assert said.form is not None
+    assert words in str(said)
+    assert is_true(runner, TASKS["gravity"], source_of(TASKS["gravity"], body), said)

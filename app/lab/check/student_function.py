@@ -182,6 +182,10 @@ class EditedFunction(StudentFunction):
         """As of `StudentFunction`."""
         return self.series("edited", self.number, samples, len(samples))
 
+    def steps(self, sample: tuple[Any, ...], steps: int) -> list[Any]:
+        """As of `StudentFunction`."""
+        return self.values([sample])
+
 
 def special_cases(
     names: Sequence[str], arguments: Sequence[Any], units: Mapping[str, str]

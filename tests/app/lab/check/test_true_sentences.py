@@ -190,6 +190,12 @@ def test_no_mistake_of_a_first_year_is_called_right_and_each_repair_does_what_it
         ("gravity", "Brackets are missing", "return 9.81 * mass_ratio ** 1 / 3"),
         ("dispersion", "Without np.tanh(k)|gravity * k in place of",
          "w0 = 2 * np.pi / repeat_time\nreturn calm * np.floor(np.sqrt(gravity * k * np.tanh(k)) / w0) * w0"),
+        ("step_rk4", "The sign // rounds the quotient down",
+         "kx1, kv1 = v, acceleration(x, v)\n"
+         "kx2, kv2 = v + h // 2 * kv1, acceleration(x + h // 2 * kx1, v + h // 2 * kv1)\n"
+         "kx3, kv3 = v + h // 2 * kv2, acceleration(x + h // 2 * kx2, v + h // 2 * kv2)\n"
+         "kx4, kv4 = v + h * kv3, acceleration(x + h * kx3, v + h * kv3)\n"
+         "return x + h / 6 * (kx1 + 2 * kx2 + 2 * kx3 + kx4), v + h / 6 * (kv1 + 2 * kv2 + 2 * kv3 + kv4)"),
         ("wave_decay", "one factor only",
          "return amplitude * np.exp(-2 * viscosity * (wavenumber * time) ** 2)"),
         ("reflectance", "never holds", "if angle > np.arcsin(1 / index):\n    return 1\nc = np.cos(angle)\n"

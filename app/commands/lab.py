@@ -57,8 +57,8 @@ def run_live(arguments: argparse.Namespace) -> int:
     if len(arguments.folders) > 1:
         return serve_class(arguments)
     from app.lab.course.task import load_tasks
-    from app.lab.course.workbook import Workbook
     from app.lab.student.session import Session
+    from app.lab.student.workbook import Workbook
 
     session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
     try:

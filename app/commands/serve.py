@@ -21,8 +21,8 @@ from app.server.web.guard import Opened, is_loopback, open_server, quiet
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
-    from app.lab.course.workbook import Workbook
     from app.lab.student.session import Session
+    from app.lab.student.workbook import Workbook
     from app.scenes.setups import Setup
     from app.server.viewer import Viewer
 
@@ -109,7 +109,7 @@ def serve_lab(
 
     def make() -> "Viewer":
         from app.lab.course.task import load_tasks
-        from app.lab.course.workbook import Workbook
+        from app.lab.student.workbook import Workbook
         from app.server.viewer import Viewer
 
         tasks = workbook or Workbook(load_tasks(with_checks=False))

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.check.diagnosis.explanation import Equation
+from app.lab.diagnosis.explanation import Equation
 
 
 class Mistake(NamedTuple):

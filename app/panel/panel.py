@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import RunRow
 from app.panel.controls.controls import Controls
 from app.panel.controls.controls_tab import VIEW_GROUPS, ControlsTab

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import viser
 
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import BaseParams, Command, Halt
 from app.panel.history import EarlierSettings, History
 from app.panel.panel import Panel

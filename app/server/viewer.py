@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser

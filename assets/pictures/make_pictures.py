@@ -20,8 +20,8 @@ from playwright.sync_api import sync_playwright
 
 from app.lab.course.folder import make_folder
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
 from app.lab.student.session import Session
+from app.lab.student.workbook import Workbook
 from app.messages import Advance
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup

@@ -7,8 +7,8 @@ from typing import Any
 
 from app.lab.course.folder import make_folder
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
 from app.lab.student.session import Session
+from app.lab.student.workbook import Workbook
 from app.server.viewer import Viewer
 
 

@@ -21,6 +21,10 @@ ORDER = (
     ("formats", "messages", "files"),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
+# Rooms of app/lab, in the same way.
+LAB_RANK = {room: rank for rank, room in enumerate(
+    ("report", "student", "check", "process", "course", "checking", "diagnosis")
+)}  # fmt: skip
 TOP_MODULES = {"__init__", "__main__", "messages", "files"}  # directly in app/
 VIEWING = ("server", "panel", "render")  # folders that may import viser, beside each scene's drawing
 SCENES_SHARED = {"springs", "ahead"}  # folders in app/scenes that are no scenes
@@ -101,23 +105,26 @@ def test_at_most_four_modules_lie_directly_in_app():
     assert {path.stem for path in (ROOT / "app").glob("*.py")} <= TOP_MODULES
 
 
-def test_imports_in_app_point_one_way():
-    wrong = []
-    for path in below("app"):
-        own = path.relative_to(ROOT).parts[1].removesuffix(".py")
-        if own not in RANK:
+@pytest.mark.parametrize(("top", "rank"), [("app", RANK), ("app/lab", LAB_RANK)])
+def test_imports_point_one_way(top: str, rank: dict[str, int]):
+    place, wrong = tuple(top.split("/")), []
+    for path in below(top):
+        own = path.relative_to(ROOT / top).parts[0].removesuffix(".py")
+        if own not in rank:
             continue  # __init__ and __main__
         for name in imports(path):
-            parts = name.split(".")
-            other = parts[1] if parts[0] == "app" and len(parts) > 1 else own
-            if other in RANK and other != own and RANK[other] <= RANK[own]:
+            parts = tuple(name.split("."))
+            other = parts[len(place)] if parts[: len(place)] == place and len(parts) > len(place) else own
+            if other in rank and other != own and rank[other] <= rank[own]:
                 wrong.append(f"{named(path)} imports {name}")
     assert not wrong
 
 
-def test_every_folder_of_app_has_its_place_in_the_order():
-    folders = {path.name for path in (ROOT / "app").iterdir() if path.is_dir() and path.name != "__pycache__"}
-    assert folders | (TOP_MODULES - {"__init__", "__main__"}) == set(RANK)
+@pytest.mark.parametrize(("top", "rank"), [("app", RANK), ("app/lab", LAB_RANK)])
+def test_every_folder_has_its_place_in_the_order(top: str, rank: dict[str, int]):
+    folders = {path.name for path in (ROOT / top).iterdir() if path.is_dir() and path.name != "__pycache__"}
+    modules = {path.stem for path in (ROOT / top).glob("*.py")} - {"__init__", "__main__"}
+    assert folders | modules == set(rank)
 
 
 def test_no_scene_imports_another():

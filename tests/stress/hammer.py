@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import GrabTo, Pause, Place, Play, PointAlong, Release, Reset, StepOnce
 from app.scenes.ahead.compiling import prepare
 from app.scenes.contract import FRAME_INTERVAL

@@ -29,16 +29,16 @@ from app.lab.check.comparing import (
     same,
     same_shape,
 )
-from app.lab.check.diagnosis import differences
-from app.lab.check.diagnosis.conditions import conditions_of
-from app.lab.check.diagnosis.explanation import Explanation, says_repair
-from app.lab.check.diagnosis.steps import explain_step
-from app.lab.check.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
-from app.lab.check.diagnosis.units import clashes, units_of
 from app.lab.check.inputs import RANDOM, SEED, Sample
 from app.lab.check.python_errors import in_plain_words
 from app.lab.check.student_function import TASK_LIMIT, EditedFunction, StudentFunction, Trial
 from app.lab.checking import Counted, Wrong
+from app.lab.diagnosis import differences
+from app.lab.diagnosis.conditions import conditions_of
+from app.lab.diagnosis.explanation import Explanation, says_repair
+from app.lab.diagnosis.steps import explain_step
+from app.lab.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
+from app.lab.diagnosis.units import clashes, units_of
 from app.lab.process.runner import RunError
 
 TERM_SAMPLES = 16  # random inputs at which terms are compared

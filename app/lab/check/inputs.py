@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from app.lab.check.comparing import call, same
-from app.lab.check.diagnosis.units import units_of
+from app.lab.diagnosis.units import units_of
 
 SEED = 20150130
 RANDOM = 36  # random inputs of the task

@@ -16,15 +16,15 @@ import numpy as np
 
 from app.lab.check.comparing import call, same
 from app.lab.check.diagnose import behave, diagnosed, error_with_repair, explain, with_repair
-from app.lab.check.diagnosis.effects import EFFECTS
-from app.lab.check.diagnosis.explanation import Equation
 from app.lab.check.inputs import inputs_of
 from app.lab.check.python_errors import in_plain_words
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong
+from app.lab.course.source import read_source
 from app.lab.course.task import Task
+from app.lab.diagnosis.effects import EFFECTS
+from app.lab.diagnosis.explanation import Equation
 from app.lab.process.runner import BUSY, RunError, Runner
-from app.lab.student.source import read_source
 
 MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
 RETRY_INTERVAL = 0.5  # [s] between two of them

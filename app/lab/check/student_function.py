@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.lab.check.comparing import call, conform, has, same
-from app.lab.check.diagnosis.units import units_of
-from app.lab.check.oscillator import oscillator
 from app.lab.checking import Wrong
 from app.lab.course.task import Task
+from app.lab.diagnosis.oscillator import oscillator
+from app.lab.diagnosis.units import units_of
 from app.lab.process.call_limit import MAX_WAIT
 from app.lab.process.runner import BUSY, RunError, Runner
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.diagnosis.causes import causes, finer_steps, late_causes, traps
-from app.lab.check.diagnosis.edits import Candidate, Tree, more_slips, slips
-from app.lab.check.diagnosis.effects import copied, state_of, watched
-from app.lab.check.oscillator import steps_of_oscillator
+from app.lab.diagnosis.causes import causes, finer_steps, late_causes, traps
+from app.lab.diagnosis.edits import Candidate, Tree, more_slips, slips
+from app.lab.diagnosis.effects import copied, state_of, watched
+from app.lab.diagnosis.oscillator import steps_of_oscillator
 from app.lab.process.student_modules import StudentModules
 
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function

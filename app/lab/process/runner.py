@@ -25,6 +25,7 @@ from typing import IO, Any, TypeAlias
 
 import numpy as np
 
+from app.lab.course.source import decoded
 from app.lab.process.call_limit import ASLEEP, COMPUTING, ENDLESS, CallLimit
 from app.lab.process.call_limit import BUSY as BUSY_MACHINE
 from app.lab.process.child_processes import end_with_this_program, kill_with_children
@@ -35,7 +36,6 @@ from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL, CodePlace, pla
 from app.lab.process.tabulate import Interval
 from app.lab.process.template import Forked, Template, can_fork
 from app.lab.process.wire import Foreign, pack, receive, send, unpack
-from app.lab.student.source import decoded
 
 TIME_LIMIT = 2.0  # [s] of one call
 LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; longer at each further try

@@ -10,7 +10,7 @@ at many arguments (`tabulate.py`). Printed lines are counted and dropped: the pi
 
 `["watch", file, function, [twice, samples]]` calls a function at several arguments, and fails where it has a side
 effect (`checked_calls.py`, `diagnosis/effects.py`). `["oscillate", file, function, [steps, samples]]` does so with
-steps of an oscillator, each from that before (`check/oscillator.py`).
+steps of an oscillator, each from that before (`diagnosis/oscillator.py`).
 `["edits", file, function, [kind, names, conditions, arguments]]` calls a function's edits,
 `["words", file, function, [numbers, units, clashes]]` describes some of them, and
 `["edited", file, function, [number, samples]]` calls one of them (`diagnosis/edits.py`).
@@ -37,7 +37,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from app.lab.check.diagnosis.effects import Effect
+from app.lab.diagnosis.effects import Effect
 from app.lab.process.checked_calls import CheckedCalls, plain, solutions
 from app.lab.process.cloth_march import ClothFunctions
 from app.lab.process.rope_march import ClothData, Functions, Unfit, march, unpacked

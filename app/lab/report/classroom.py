@@ -16,11 +16,11 @@ from app.lab.check.program_check import Verdict, check_program
 from app.lab.course.answer_check import check_answer
 from app.lab.course.answers import FILE, Answers, read_answers
 from app.lab.course.folder import check_is_folder
+from app.lab.course.source import read_source
 from app.lab.course.task import Task
 from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.report.rope_picture import NOT_DRAWN, RopePicture, rope_picture
 from app.lab.student.saved import Saved
-from app.lab.student.source import read_source
 from app.lab.student.versions import LOOK_INTERVAL, FileWatch, Versions
 
 WORKERS = 2  # folders that are checked at the same time

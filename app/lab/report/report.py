@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from app.lab.check.check import FolderResult, TaskResult
-from app.lab.check.diagnosis.equation_html import equation_lines
 from app.lab.course.answer_check import AnswerVerdict
 from app.lab.course.answers import Answers, Value
 from app.lab.course.folder import MAX_PICTURES, PICTURES, folder_names
+from app.lab.course.source import is_empty
 from app.lab.course.task import Task
+from app.lab.diagnosis.equation_html import equation_lines
 from app.lab.report.chart import chart
-from app.lab.student.source import is_empty
 from app.render.markup.formula import formula
 from app.render.markup.html import Html, fill, join
 

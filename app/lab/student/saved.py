@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from app.lab.course.source import read_source
 from app.lab.course.task import Task
-from app.lab.student.source import read_source
 
 MAX_SIZE = 2**20  # [bytes] of a file that is copied
 

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from app.lab.check.background_check import BackgroundCheck
 from app.lab.course.folder import check_is_folder
 from app.lab.course.task import Task
 from app.lab.process.runner import TIME_LIMIT, RunError
+from app.lab.student.background_check import BackgroundCheck
 from app.lab.student.live_code import LiveCode
 from app.lab.student.live_net import CLOTH, ROPE, LiveNet
 from app.lab.student.live_tables import LiveTables

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import viser
 
 from app.lab.course.task import Task
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.panel.recording.long_work import LongWork
 from app.panel.recording.picture import take_picture
 

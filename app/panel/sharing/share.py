@@ -10,7 +10,7 @@ import time
 import numpy as np
 import viser
 
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import BaseParams, Vector
 from app.panel.plots import Plots
 from app.panel.recording.files import Files, MakeReplay, file_name

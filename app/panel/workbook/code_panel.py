@@ -4,10 +4,10 @@ import numpy as np
 import viser
 
 from app.formats.formatting import metres, number
-from app.lab.check.diagnosis.equation_html import equation_lines
 from app.lab.check.program_check import Verdict
 from app.lab.course.live_values import LiveValues
 from app.lab.course.task import Task
+from app.lab.diagnosis.equation_html import equation_lines
 from app.lab.process.runner import BUSY, RunError
 from app.lab.student.live_net import CLOTH, ROPE, StudentReport
 from app.lab.student.live_tables import Call, LiveTables, TableReport

@@ -12,7 +12,7 @@ import viser
 from app.lab.course.answer_check import chosen
 from app.lab.course.live_values import LiveNumber, LiveValue, LiveValues, fill_in
 from app.lab.course.task import PREDICTION, Question, Task, TaskSetup
-from app.lab.course.workbook import Workbook, read_off
+from app.lab.student.workbook import Workbook, read_off
 from app.panel.controls.controls import Controls
 from app.panel.recording.report_pictures import ReportPictures
 from app.panel.workbook.task_list import TaskList

@@ -3,7 +3,7 @@
 import viser
 
 from app.lab.course.task import Task
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.render.handles.viser_types import ViserEvent
 
 BACK, ON = "◀", "▶"  # to the task before, and to the next; `fields.js` names them

@@ -1,7 +1,7 @@
 """Set-ups of the lab's tasks, and links that open a task."""
 
 from app.lab.course import task
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.scenes import scene_named
 from app.scenes.setups import Setup, make_setup, read_query, split_task
 from sim.validation import argument_error

@@ -17,8 +17,8 @@ from app.commands.lab_class import make_server
 from app.lab.course.answers import read_answers
 from app.lab.course.folder import make_folder
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
 from app.lab.report.classroom import Classroom
+from app.lab.student.workbook import Workbook
 from app.messages import Pause, Play
 from app.render import client_page
 from app.render.scripts import before_tags

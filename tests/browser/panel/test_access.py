@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import Pause
 from app.scenes import NAMES
 from app.server.viewer import Viewer

@@ -9,7 +9,7 @@ import pytest
 
 from app.lab.course.folder import make_folder
 from app.lab.course.task import Task, load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import Pause
 from app.panel.workbook.guide import SET_UP, label_of
 from app.render.markup.html import Html

@@ -8,7 +8,7 @@ import pytest
 from app.lab.course.answers import read_answers
 from app.lab.course.folder import make_folder
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.messages import Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab

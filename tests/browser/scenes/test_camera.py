@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.scenes import scene_named
 from app.server.viewer import Viewer
 from sim.parameters import check_record

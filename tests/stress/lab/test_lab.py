@@ -53,7 +53,7 @@ PAGE_WRITER = """
 import sys
 from pathlib import Path
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 book = Workbook(load_tasks(with_checks=False), Path(sys.argv[1]))
 task = next(task for task in book.tasks if task.name == "extra_draft")
 measure, explain = task.questions[1:]

@@ -21,10 +21,10 @@ from app.lab.check.program_check import Verdict, check_program
 from app.lab.check.student_function import StudentFunction, special_cases
 from app.lab.checking import Mistake, Wrong
 from app.lab.course.folder import stub
+from app.lab.course.source import read_source
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import BUSY, RunError, Runner
 from app.lab.student.saved import store
-from app.lab.student.source import read_source
 from tests.app.lab.solutions.right_solutions import RIGHT
 from tests.app.lab.solutions.students_mistakes import CASES as MISTAKES
 from tests.app.lab.solutions.wrong_solutions import WRONG

@@ -16,14 +16,14 @@ from msgspec.structs import replace
 
 from app.lab.check.comparing import call, conform, parts, reproduces, same
 from app.lab.check.diagnose import behave
-from app.lab.check.diagnosis.differences import number
-from app.lab.check.diagnosis.edits import Tree, more_slips
-from app.lab.check.diagnosis.effects import EFFECTS
 from app.lab.check.inputs import Watched, inputs_of
 from app.lab.check.program_check import check_exactly, check_program, compare, settled
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Counted, Wrong
 from app.lab.course.task import Task, load_tasks
+from app.lab.diagnosis.differences import number
+from app.lab.diagnosis.edits import Tree, more_slips
+from app.lab.diagnosis.effects import EFFECTS
 from app.lab.process.runner import RunError, Runner
 from tests.app.lab.solutions.audit_mistakes import MISTAKES
 from tests.app.lab.solutions.followed import followed, says_a_repair

@@ -11,7 +11,7 @@ from app.lab.course.answer_check import check_answer
 from app.lab.course.answers import FILE, Answers, answers_text, change_answer, read_answers, strangers
 from app.lab.course.folder import right_answers
 from app.lab.course.task import Question, TypicalError, load_tasks
-from app.lab.course.workbook import answer_of
+from app.lab.student.workbook import answer_of
 from tests.app.lab.solutions.answers_file import write_answers
 
 ROOT = Path(__file__).parents[4]
@@ -216,7 +216,7 @@ KILLED = """
 import os, sys
 from pathlib import Path
 from app.lab.course.answers import change_answer, read_answers
-from app.lab.course.workbook import answer_of
+from app.lab.student.workbook import answer_of
 from app.lab.course.task import load_tasks
 
 def write_half(path, data):

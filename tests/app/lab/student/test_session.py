@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab.check.background_check import BackgroundCheck
 from app.lab.check.program_check import Verdict, not_checked
 from app.lab.course.folder import make_folder
 from app.lab.course.task import load_tasks
 from app.lab.process.rope_march import REFERENCE
 from app.lab.process.runner import RunError, Runner
+from app.lab.student.background_check import BackgroundCheck
 from app.lab.student.live_net import CLOTH, ROPE, StudentReport, bent_rope
 from app.lab.student.live_tables import TableReport
 from app.lab.student.saved import read_files
@@ -352,7 +352,7 @@ def test_a_check_that_a_busy_machine_does_not_allow_is_made_again(
 ) -> None:
     wait_for(lambda: not right.check.waiting)
     answers = iter([not_checked("the machine is busy"), Verdict("right")])
-    monkeypatch.setattr("app.lab.check.background_check.RETRY_INTERVAL", 0.3)
+    monkeypatch.setattr("app.lab.student.background_check.RETRY_INTERVAL", 0.3)
     monkeypatch.setattr(right.check, "ask", lambda folder, name: next(answers))
     save(right, RIGHT + "\n# to be checked\n")
     wait_for(lambda: right.versions.verdicts.get("spring_force") not in (None, Verdict("right")))

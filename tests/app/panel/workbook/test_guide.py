@@ -13,7 +13,7 @@ from app.lab.course.answers import FILE, read_answers
 from app.lab.course.folder import PICTURES, make_folder
 from app.lab.course.live_values import LiveNumber
 from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.panel.panel import Panel
 from app.panel.workbook.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
 from app.panel.workbook.task_list import BACK, ON

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.lab.course.task import Task, load_tasks
-from app.lab.course.workbook import Workbook
+from app.lab.student.workbook import Workbook
 from app.panel.sharing.share import Share
 from app.panel.workbook.task_setups import read_link, setup_of_task
 from app.server.viewer import Viewer

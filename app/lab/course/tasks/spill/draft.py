@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.check.diagnosis.differences import Case
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis.differences import Case
 
 
 def draft(body_density, height, oil_density, oil_thickness, water_density):

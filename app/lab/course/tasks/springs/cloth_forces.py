@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.check.diagnosis import links as laws
 from app.lab.checking import Mistake, require
+from app.lab.diagnosis import links as laws
 
 
 def cloth_forces(x, v, links, rest_lengths, stiffness, damping):

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from app.lab.check.diagnosis import links
-from app.lab.check.diagnosis.terms import Form, Term
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis import links
+from app.lab.diagnosis.terms import Form, Term
 
 
 def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):

@@ -5,9 +5,9 @@ import itertools
 
 import numpy as np
 
-from app.lab.check.diagnosis.differences import Case
-from app.lab.check.diagnosis.terms import Form, Term
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis.differences import Case
+from app.lab.diagnosis.terms import Form, Term
 
 
 def sphere_force(x, v, centre, radius, stiffness, damping):

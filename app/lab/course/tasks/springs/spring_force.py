@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from app.lab.check.diagnosis import links
-from app.lab.check.diagnosis.terms import Form, Term
 from app.lab.checking import Curve, Mistake, Wrong, require
+from app.lab.diagnosis import links
+from app.lab.diagnosis.terms import Form, Term
 
 
 def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.check.oscillator import amplitude, amplitudes, oscillate, step_inputs
 from app.lab.checking import Curve, Method, Mistake, require
+from app.lab.diagnosis.oscillator import amplitude, amplitudes, oscillate, step_inputs
 
 
 def step_leapfrog(x, v, h, acceleration):

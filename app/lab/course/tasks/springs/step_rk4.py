@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.check.oscillator import amplitudes, oscillate, oscillator, step_inputs
 from app.lab.checking import Counted, Curve, Method, Mistake, require
+from app.lab.diagnosis.oscillator import amplitudes, oscillate, oscillator, step_inputs
 
 
 def step_rk4(x, v, h, acceleration):

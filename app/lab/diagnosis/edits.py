@@ -13,8 +13,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from app.lab.check.diagnosis.explanation import says_repair
-from app.lab.check.diagnosis.units import clashes
+from app.lab.diagnosis.explanation import says_repair
+from app.lab.diagnosis.units import clashes
 
 # Kinds of edits, the most likely first: a named cause, less text, a fixed condition, another text, more text.
 CAUSE, SHORTER, CONDITION, OTHER, LONGER = range(5)

@@ -12,7 +12,7 @@ from app.lab.course.answers import FILE, Answers, read_answers
 from app.lab.course.folder import MAX_PICTURES, PICTURES, make_folder
 from app.lab.course.live_values import LiveNumber
 from app.lab.course.task import Question, Task, load_tasks
-from app.lab.course.workbook import DONE, MAX_TEXT, Workbook, read_off
+from app.lab.student.workbook import DONE, MAX_TEXT, Workbook, read_off
 from app.scenes import scene_named
 from sim.parameters import parameters_of
 
@@ -241,7 +241,7 @@ def test_a_look_at_the_file_that_began_before_a_change_does_not_undo_it(
         return found
 
     looking = threading.Thread(target=book.refresh)
-    monkeypatch.setattr("app.lab.course.workbook.read_answers", read_slowly)
+    monkeypatch.setattr("app.lab.student.workbook.read_answers", read_slowly)
     looking.start()
     assert has_read.wait(10.0)
     book.answer(DRAFT, MEASURE, "2")

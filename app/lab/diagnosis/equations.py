@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.lab.check.diagnosis.explanation import Equation, Piece
-from app.lab.check.diagnosis.tableau import FIRST_ACCELERATION, POWERS, StepTableau
+from app.lab.diagnosis.explanation import Equation, Piece
+from app.lab.diagnosis.tableau import FIRST_ACCELERATION, POWERS, StepTableau
 
 LARGEST_DENOMINATOR = 48
 MOST_CHANGES = 3  # of an expression, beyond which it is written in x, v and the accelerations

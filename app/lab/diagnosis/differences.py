@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.check.diagnosis.explanation import Explanation
+from app.lab.diagnosis.explanation import Explanation
 
 AXES = "xyz"
 MAX_NUMBERS = 4  # of an argument or a result, shown at most

@@ -4,9 +4,9 @@ import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from app.lab.check.diagnosis.equations import NEW, ComparedRow, RightMethod, compared, equations_of, method_of
-from app.lab.check.diagnosis.explanation import Explanation
-from app.lab.check.diagnosis.tableau import NoTableau, StepTableau, merged, order_of, pruned, read_tableau
+from app.lab.diagnosis.equations import NEW, ComparedRow, RightMethod, compared, equations_of, method_of
+from app.lab.diagnosis.explanation import Explanation
+from app.lab.diagnosis.tableau import NoTableau, StepTableau, merged, order_of, pruned, read_tableau
 
 PARTS = {f"{NEW} x": "The new position is", f"{NEW} v": "The new velocity is"}
 

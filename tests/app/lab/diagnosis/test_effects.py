@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.check.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE, alike, digest, is_writing
 from app.lab.check.program_check import Verdict, check_program
 from app.lab.course.task import Task, load_tasks
+from app.lab.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE, alike, digest, is_writing
 from app.lab.process.runner import Runner
 
 TASKS = {task.name: task for task in load_tasks() if task.check is not None}

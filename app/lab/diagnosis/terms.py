@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.check.diagnosis.effects import copied
-from app.lab.check.diagnosis.explanation import Equation, Explanation, Piece
-from app.lab.check.diagnosis.factors import factor_text, is_simple
+from app.lab.diagnosis.effects import copied
+from app.lab.diagnosis.explanation import Equation, Explanation, Piece
+from app.lab.diagnosis.factors import factor_text, is_simple
 
 TOLERANCE = 2e-5  # of the largest part of a result at an input: single precision is right too
 SMALL_CHANGE = 0.02  # of a constant, which is given in per cent
@@ -197,7 +197,7 @@ def explain_terms(
 
 
 def factor_of_all(found: Sequence[np.ndarray], results: Sequence[np.ndarray]) -> float:
-    """The factor between all results of two functions, as precise as single precision; 0 if there is none."""
+    """The factor between all results of two functions, within `TOLERANCE`; 0 without one."""
     a, b = (np.concatenate([value.ravel() for value in values]) for values in (found, results))
     largest = np.argmax(np.abs(b))
     factor = float(a[largest] / b[largest]) if b[largest] else 0.0

@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from app.lab.check.diagnosis.edits import (
+from app.lab.diagnosis.edits import (
     CAUSE,
     OTHER,
     Candidate,

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 from app.lab.check.comparing import reproduces
-from app.lab.check.diagnosis.differences import part_of
-from app.lab.check.diagnosis.edits import Tree, more_slips, slips
-from app.lab.check.diagnosis.equation_html import notation
-from app.lab.check.diagnosis.equations import equations_of, written
-from app.lab.check.diagnosis.factors import is_simple
-from app.lab.check.diagnosis.links import SPRING_FORMS, spring
-from app.lab.check.diagnosis.steps import explain_step
-from app.lab.check.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
-from app.lab.check.diagnosis.terms import Term, explain_terms
 from app.lab.check.program_check import Verdict
 from app.lab.course.task import load_tasks
+from app.lab.diagnosis.differences import part_of
+from app.lab.diagnosis.edits import Tree, more_slips, slips
+from app.lab.diagnosis.equation_html import notation
+from app.lab.diagnosis.equations import equations_of, written
+from app.lab.diagnosis.factors import is_simple
+from app.lab.diagnosis.links import SPRING_FORMS, spring
+from app.lab.diagnosis.steps import explain_step
+from app.lab.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
+from app.lab.diagnosis.terms import Term, explain_terms
 
 TASKS = {task.name: task for task in load_tasks() if task.check is not None}
 SEED = 20261126

@@ -24,7 +24,7 @@ from app.lab.student.service import Service
 from app.lab.student.versions import Versions
 
 RETRY_INTERVAL = 2.0  # [s] until a failed check is repeated
-START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.check.background_check import main; main()"
+START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.student.background_check import main; main()"
 ENDED = Verdict("not checked", "The check ended twice without a result. Save the file again.")
 
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Sequence
 
-from app.lab.check.diagnosis.equations import NEW
-from app.lab.check.diagnosis.explanation import Equation
+from app.lab.diagnosis.equations import NEW
+from app.lab.diagnosis.explanation import Equation
 from app.render.markup.html import Html, fill, join
 
 NUMBERED = re.compile(r"\b([xva])(\d+)\b|\bnew ([xv])\b")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.diagnosis.terms import Form, Group, Term
+from app.lab.diagnosis.terms import Form, Group, Term
 
 Law = Callable[..., Any]
 

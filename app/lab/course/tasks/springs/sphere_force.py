@@ -35,10 +35,12 @@ def inputs(rng):
     return x, 3.0 * v, centre, radius, rng.uniform(10.0, 30.0), rng.uniform(2.0, 6.0)
 
 
-# The sphere of the lab's cloth, and a hard one.
+# The sphere of the lab's cloth, and a hard one; then points outside, above and below, that come in fast.
 EXAMPLES = (
     (np.array([0.1, 0.2, 0.9]), np.array([0.0, 0.5, -2.0]), np.zeros(3), 1.0, 3000.0, 5.0),
     (np.array([0.0, 0.5, 0.0]), np.array([0.0, -3.0, 0.0]), np.zeros(3), 1.0, 1e5, 10.0),
+    (np.array([0.0, 0.1, 1.2]), np.array([0.0, 0.0, -20.0]), np.zeros(3), 1.0, 100.0, 10.0),
+    (np.array([0.1, 0.0, -1.2]), np.array([0.0, 0.0, 20.0]), np.zeros(3), 1.0, 100.0, 10.0),
 )
 
 

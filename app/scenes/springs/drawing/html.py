@@ -32,13 +32,13 @@ UNLIMITED = 2.0  # steps that are right, in the length of the bar of a method th
 def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     """The step relative to the largest stable one, and whether it is right, as a bar with a text.
 
-    The bar is hatched from the step on up to which the method is right. exact: the largest stable step is that of the
-    state, not a bound of it.
+    Of a stable step the bar is hatched beyond the step up to which the method is right. exact: the largest stable step
+    is that of the state, not a bound of it.
     """
     colour = verdict_colour(gauge)
     full = gauge.critical_step if gauge.critical_step < math.inf else UNLIMITED * gauge.accurate_step
     used = gauge.step / full if full > 0.0 else math.inf
-    right = gauge.accurate_step / full if 0.0 < full < math.inf else 1.0
+    right = gauge.accurate_step / full if 0.0 < full < math.inf and gauge.share <= 1.0 else 1.0
     wrong = fill('<div class="wrong" style="left:{:.0f}%"></div>', 100.0 * right) if right < 1.0 else Html("")
     return fill(
         '<div><span class="springtide-step-share">{}</span>{} {}</div>'

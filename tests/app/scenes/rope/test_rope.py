@@ -461,6 +461,8 @@ def test_a_step_that_is_right_is_told_from_one_that_is_only_stable() -> None:
     assert wrong.count(WRONG_COLOUR) == 3  # two words and the bar
     assert '<div class="wrong" style="left:25%"></div>' in wrong  # hatched from there, not by colour alone
     assert "<div>Right: implicit midpoint at this step.</div>" in wrong
+    unstable = STEP_OF_1_MS._replace(critical_step=8e-4, accurate_step=5e-4, error=0.034)
+    assert 'class="wrong"' not in stability_bar(unstable)
 
 
 def test_of_a_method_without_a_limit_the_bar_shows_where_it_is_right() -> None:

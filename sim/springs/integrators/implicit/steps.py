@@ -148,7 +148,7 @@ def set_blocks(x0, g, t, p, x, v, work):
 
 
 @kernel
-def solve_rope_stage(x0, v0, a0, g, t, limits, p, x, v, work):
+def solve_rope_stage(x0, v0, a0, g, t, limits, may_split, p, x, v, work):
     """`solve_stage` of a chain, to round-off, which costs one correction more than any other tolerance."""
     count, settled, size = 0, False, np.inf
     while count < limits.most_of_rope and not is_stopped(p.stop):
@@ -215,22 +215,31 @@ def advance_along(x0, v0, g, t, p, x, v, work):
 
 
 @kernel
-def solve_net_stage(x0, v0, a0, g, t, limits, p, x, v, work):
+def solve_net_stage(x0, v0, a0, g, t, limits, may_split, p, x, v, work):
     """`solve_stage` of a net, by a quasi-Newton method, to `tolerance`.
 
-    The factors are those of an earlier stage or of the first guess, until FEW corrections were not enough.
+    The factors are those of an earlier stage or of the first guess, until FEW corrections were not enough. A part that
+    may be split ends there, if it is not going to be usable.
     """
     solver = work.solver
     count, evals, known, settled, usable = 0, 1, 0, False, False
-    size, last = np.inf, np.inf
+    size, last, start, change, speed = np.inf, np.inf, np.inf, 0.0, 0.0
     set_residual(x0, v0, g, t, p, x, v, work)
     while not is_stopped(p.stop):
+        if count > 0 and count % FEW == 0:
+            # New factors make the error fall as the last ones did. Where that is not enough, halves are quicker.
+            expected = size * (size / start) ** ((limits.most - count) / FEW)
+            if may_split and min(size, expected) > limits.usable * (change + speed):
+                break
+            start = size
         if solver.factors_of[0] != g or (count > 0 and count % FEW == 0):
             set_blocks(x0, g, t, p, x, v, work)
             forget_factors(solver, p)
             known = 0
         known = correct_net(g, known, p, work)
         before, last, size = last, size, norm(work.u, p)
+        if count == 0:
+            start = size
         # The error that the residual stands for, if further corrections shrink as the slowest of the last two did.
         rate = max(size / last, math.sqrt(size / before)) if last < np.inf else 0.5
         error = size / (1.0 - rate) if rate < 1.0 else np.inf
@@ -250,6 +259,7 @@ def solve_net_stage(x0, v0, a0, g, t, limits, p, x, v, work):
 
 
 # Solve for v, from the guess in v, with x = x0 + g v. a0: the acceleration at the start of the step, of a net.
+# may_split: the part of the step is not the finest.
 #
 # Returns the corrections, the force evaluations, whether they settled, and whether v may be used although they did not.
 solve_stage = by_net(rope=solve_rope_stage, grid=solve_net_stage)
@@ -316,7 +326,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                 # A net that falls freely is solved by this first guess.
                 if p.conserves_momentum:
                     conserve_momentum(x0, v0, g, p, xs, vs)
-                count, asked, settled, usable = solve_stage(x0, v0, a, g, then, limits, p, xs, vs, work)
+                count, asked, settled, usable = solve_stage(x0, v0, a, g, then, limits, size > 1, p, xs, vs, work)
                 if p.conserves_momentum:
                     conserve_momentum(x0, v0, g, p, xs, vs)
                     if method == MIDPOINT and is_judged(p):

@@ -143,7 +143,7 @@ def test_a_net_s_stage_solves_its_equation(model):
     v0 = np.random.default_rng(1).normal(0.0, 0.1, x0.size) * np.tile(net.inverse_masses().ravel() > 0.0, 3)
     x, v, work = x0.copy(), v0.copy(), steps.make_work(p, False)
     limits = steps.OF_EULER._replace(error=0.0, usable=0.0, most=100)
-    taken, evals, settled, usable = steps.solve_stage(x0, v0, 0.0 * v0, g, 0.0, limits, p, x, v, work)
+    taken, evals, settled, usable = steps.solve_stage(x0, v0, 0.0 * v0, g, 0.0, limits, False, p, x, v, work)
     assert settled
     assert usable
     assert taken < min(evals, 60)

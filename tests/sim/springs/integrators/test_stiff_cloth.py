@@ -127,7 +127,7 @@ def corrections(n: int, stiffness: float) -> int:
     v0 = 1e-9 * np.random.default_rng(0).standard_normal(x0.size) * np.tile(net.inverse_masses().ravel() > 0.0, 3)
     limits = implicit.OF_EULER._replace(error=math.inf, most=100)
     work = implicit.make_work(p, False)
-    taken, *_ = implicit.solve_stage(x0, v0, 0.0 * v0, g, g, limits, p, x0.copy(), v0.copy(), work)
+    taken, *_ = implicit.solve_stage(x0, v0, 0.0 * v0, g, g, limits, False, p, x0.copy(), v0.copy(), work)
     return taken
 
 
@@ -148,7 +148,7 @@ def tight_run(net: Net, steps: int) -> np.ndarray:
     work = implicit.make_work(p, False)
     for s in range(steps):
         x0, v0 = x.copy(), v.copy()
-        *_, settled, _ = implicit.solve_stage(x0, v0, 0.0 * v0, h, (s + 1) * h, TIGHT, p, x, v, work)
+        *_, settled, _ = implicit.solve_stage(x0, v0, 0.0 * v0, h, (s + 1) * h, TIGHT, False, p, x, v, work)
         assert settled
     return state.x
 
@@ -213,3 +213,27 @@ def test_steps_that_were_taken_unsettled_are_counted_however_they_are_shared_out
     with warnings.catch_warnings():
         warnings.simplefilter("error", ApproximationWarning)
         assert simulate(net, 20e-5, 2, 1e-5, "leapfrog").unsettled == 0
+
+
+@pytest.mark.parametrize("may_split", [True, False])
+def test_a_stage_that_will_not_be_usable_ends_early_if_it_may_be_split(may_split):
+    net = dataclasses.replace(pleats(16, 1e6, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
+    state, g, limits = State.at_rest(net), 1 / 120, implicit.OF_MIDPOINT._replace(error=0.0, usable=1e-7)
+    advance(net, state, "implicit_midpoint", 1 / 60, 2)
+    x0, v0, p = state.x.ravel(), state.v.ravel(), net.kernel_view(2 * g)
+    work = implicit.make_work(p, True)
+    taken, _, settled, usable = implicit.solve_stage(
+        x0, v0, 0.0 * v0, g, state.t, limits, may_split, p, x0.copy(), v0.copy(), work
+    )
+    assert not settled
+    assert not usable
+    assert taken == (implicit.FEW if may_split else limits.most)
+
+
+def test_a_stiff_curtain_settles_in_halves_rather_than_after_many_corrections():
+    """Both are counted: the steps that have not settled, and the force evaluations."""
+    net = dataclasses.replace(pleats(24, 3e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
+    state = State.at_rest(net)
+    advance(net, state, "implicit_midpoint", 1 / 60, 24)
+    assert state.unsettled <= 16
+    assert state.force_evals < 24 * 500

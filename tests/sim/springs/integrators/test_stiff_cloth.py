@@ -1,5 +1,6 @@
 """Implicit steps of a stiff cloth: factors by nested dissection, iterations that do not grow, errors of the solver."""
 
+import contextlib
 import dataclasses
 import math
 import warnings
@@ -185,13 +186,16 @@ def test_a_cloth_that_falls_freely_is_solved_in_two_corrections():
     assert state.v[2] == pytest.approx(-9.81 / 6, rel=1e-6)
 
 
-def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles():
-    """Though its steps do not settle: what they leave would feed the motion, but is mended."""
-    net = dataclasses.replace(pleats(12, 1e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
-    with pytest.warns(ApproximationWarning, match="implicit_midpoint had not settled"):
+@pytest.mark.parametrize(("n", "stiffness"), [(12, 1e4), (16, 1e6)])
+def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles(n, stiffness):
+    """Also where steps do not settle: what they leave would feed the motion, but is mended."""
+    net = dataclasses.replace(pleats(n, stiffness, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
+    is_settled = stiffness < 1e6
+    warned = pytest.warns(ApproximationWarning, match="implicit_midpoint had not settled")
+    with contextlib.nullcontext() if is_settled else warned:
         run = simulate(net, 0.5, 31, 1 / 60, "implicit_midpoint", with_account=True)
     total = run.energy.total + run.energy.dissipated
-    assert run.unsettled > 0
+    assert (run.unsettled == 0) == is_settled
     assert run.energy.dissipated[-1] > 10.0
     assert np.abs(total - total[0]).max() < 1e-9 * run.energy.kinetic.max()
 
@@ -218,7 +222,7 @@ def test_steps_that_were_taken_unsettled_are_counted_however_they_are_shared_out
 @pytest.mark.parametrize("may_split", [True, False])
 def test_a_stage_that_will_not_be_usable_ends_early_if_it_may_be_split(may_split):
     net = dataclasses.replace(pleats(16, 1e6, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
-    state, g, limits = State.at_rest(net), 1 / 120, implicit.OF_MIDPOINT._replace(error=0.0, usable=1e-7)
+    state, g, limits = State.at_rest(net), 1 / 120, implicit.OF_MIDPOINT
     advance(net, state, "implicit_midpoint", 1 / 60, 2)
     x0, v0, p = state.x.ravel(), state.v.ravel(), net.kernel_view(2 * g)
     work = implicit.make_work(p, True)
@@ -235,5 +239,5 @@ def test_a_stiff_curtain_settles_in_halves_rather_than_after_many_corrections():
     net = dataclasses.replace(pleats(24, 3e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
     state = State.at_rest(net)
     advance(net, state, "implicit_midpoint", 1 / 60, 24)
-    assert state.unsettled <= 16
-    assert state.force_evals < 24 * 500
+    assert state.unsettled == 0
+    assert state.force_evals < 24 * 400

@@ -176,11 +176,11 @@ def strand_touches(net, xs, vs):
         a, b, c, d = points[i], points[i + 1], points[j], points[j + 1]
         s, t = nearest_places(xs[a], xs[b], xs[c], xs[d])
         shares = {a: s - 1.0, b: -s, c: 1.0 - t, d: t}
-        r = sum(share * xs[point] for point, share in shares.items())
+        r = np.sum([share * xs[point] for point, share in shares.items()], axis=0)
         depth = net.thickness - np.linalg.norm(r)
         if depth > 0.0:
             n = r / np.linalg.norm(r)
-            opening = sum(share * vs[point] for point, share in shares.items()) @ n
+            opening = np.sum([share * vs[point] for point, share in shares.items()], axis=0) @ n
             yield shares, max(0.0, net.contact.stiffness * depth - net.contact.damping * opening) * n
 
 

@@ -158,7 +158,7 @@ def dot(ax, ay, az, bx, by, bz):
 
 @kernel(inline=True)
 def turning(tt, uu, tu, first, second, pair):
-    """How far both places move along their links, as parts of these, from the slopes of half the squared distance."""
+    """Motion of both places along their links, as parts of these, from the slopes of half the squared distance."""
     of_first, of_second = 0.0 < pair.s < 1.0, 0.0 < pair.t < 1.0
     square = tt * uu - tu * tu
     if of_first and of_second and square > 1e-12 * tt * uu:

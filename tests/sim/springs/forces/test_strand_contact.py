@@ -329,6 +329,6 @@ def test_a_rope_without_a_radius_has_nothing_that_touches():
     with pytest.raises(ValueError, match="self_contact: True is not allowed; allowed: False, as a rope of radius 0"):
         rope(self_contact=True)
     with pytest.raises(ValueError, match="self_contact"):
-        rope(radius=0.1, self_contact=1)
+        rope(radius=0.1, self_contact=1)  # type: ignore[arg-type]
     assert rope(radius=0.1, self_contact=True).thickness == 0.2
     assert rope(radius=0.1).thickness == 0.0

@@ -136,6 +136,8 @@ def grab_force(grab, x, v):
 def own_contacts(net, xs, vs):
     """(a, b, force on b) of particles nearer than the thickness; those up to two rows and columns apart never
     push, and those with less than half a circle of cloth between them."""
+    if net.is_chain:
+        return
     rows, cols = net.shape
     row, col = (next((f.rest for f in net.families if f[:2] == link), math.inf) for link in ((1, 0), (0, 1)))
     particles = [(i, j) for i in range(rows) for j in range(cols)]
@@ -150,6 +152,38 @@ def own_contacts(net, xs, vs):
             yield a, b, max(0.0, net.contact.stiffness * depth - net.contact.damping * opening) * n
 
 
+def nearest_places(a, b, c, d):
+    """Parts (s, t) of the links from a to b and from c to d before their places that are nearest to each other.
+
+    The least distance is between two inner places, or an end of a link and the nearest place on the other.
+    """
+    found = [(s, nearest_part(c, d, a + s * (b - a))) for s in (0.0, 1.0)]
+    found += [(nearest_part(a, b, c + t * (d - c)), t) for t in (0.0, 1.0)]
+    inner = np.linalg.lstsq(np.column_stack([b - a, c - d]), c - a)[0]
+    found += [tuple(inner)] if (inner >= 0.0).all() and (inner <= 1.0).all() else []
+    return min(found, key=lambda parts: np.linalg.norm(c + parts[1] * (d - c) - a - parts[0] * (b - a)))
+
+
+def strand_touches(net, xs, vs):
+    """({particle: share of the force}, force) of two links of a chain that are nearer than the thickness, but for those
+    with less than half a circle of rope between them."""
+    if not net.is_chain or net.thickness == 0.0:
+        return
+    points = sorted(itertools.product(*map(range, net.shape)))
+    for i, j in itertools.combinations(range(len(points) - 1), 2):
+        if j - i < 2 or (j - i - 1) * net.families[0].rest < math.pi / 2 * net.thickness:
+            continue
+        a, b, c, d = points[i], points[i + 1], points[j], points[j + 1]
+        s, t = nearest_places(xs[a], xs[b], xs[c], xs[d])
+        shares = {a: s - 1.0, b: -s, c: 1.0 - t, d: t}
+        r = np.sum([share * xs[point] for point, share in shares.items()], axis=0)
+        depth = net.thickness - np.linalg.norm(r)
+        if depth > 0.0:
+            n = r / np.linalg.norm(r)
+            opening = np.sum([share * vs[point] for point, share in shares.items()], axis=0) @ n
+            yield shares, max(0.0, net.contact.stiffness * depth - net.contact.damping * opening) * n
+
+
 def acceleration(net, x, v, t=0.0, h=1.0):
     """Accelerations (3, rows, cols) [m/s^2]; h [s] is the step of friction."""
     rows, cols = net.shape
@@ -162,6 +196,9 @@ def acceleration(net, x, v, t=0.0, h=1.0):
     for a, b, f in own_contacts(net, xs, vs):
         force[a] -= f
         force[b] += f
+    for shares, f in strand_touches(net, xs, vs):
+        for point, share in shares.items():
+            force[point] += share * f
     pressed = loads(net, xs, vs, t)
     for i in range(rows):
         for j in range(cols):

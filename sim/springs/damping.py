@@ -196,7 +196,7 @@ def damp_rope_links(x, v, decay, p, reverse):
         damp_rope(v, decay, p, reverse)
 
 
-damp_rows = by_net(rope=damp_rope_links, grid=damp_links)
+damp_rows = by_net(rope=damp_rope_links, grid=damp_links, strand=damp_rope_links)
 
 
 @each_link()
@@ -259,8 +259,8 @@ other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
 hold_all = each("hold", "x, v, t, s, p, foreseen", "sum", allocates=False)
 foresee_all = each("foresee", "x, v, t, p", "none", allocates=False)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
-# The same where the damping of contact is inside the kick of each point and link.
-beside = [force for force in FORCES if force.name not in ("contact", "link_contact")]
+# The same where the damping of contact is inside the kick of each point, link and pair of links.
+beside = [force for force in FORCES if force.name not in ("contact", "link_contact", "strand_contact")]
 damp_beside = each("damp", "x, v, t, s, p, reverse", "sum", beside, turns=True, allocates=False)
 
 

@@ -18,7 +18,7 @@ from sim.jit import MAX_THREADS
 from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
-from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
+from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays, StrandArrays, TouchArrays, WideArrays
 from sim.springs.points.line_arrays import record_of
 from sim.springs.points.point_system import PointSystem
 from sim.springs.run import Run
@@ -42,7 +42,7 @@ CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, 
 GRID_COST = 4.0  # of a point with links in several directions, over that of a rope's
 CONTACT_COST = 300.0  # of a point of a net that touches itself
 LEAST_BAND = 8  # least rows for a thread
-PAIRS = 24  # most pairs within reach for each particle, on average; further pairs are not pushed
+PAIRS = 24  # most pairs within reach for each particle or, of a chain, thickness of it, on average; more do not push
 FARTHEST = 1e9  # [m] from the origin, beyond which a net has diverged
 
 
@@ -125,7 +125,7 @@ class Net(PointSystem[Run]):
     pin_paths: tuple[tuple[tuple[int, int], PinPath], ...] = ()
     grab: Grab | None = None
     air: Air | None = None
-    thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
+    thickness: float = 0.0  # [m]: particles, or links of a chain, nearer to each other than this push; 0: they pass
     mass_ratios: NDArray[np.float64] | None = None  # (rows, cols), each point's mass over `mass`; None: 1
     side_ratio: float = 1.0  # stiffness and damping of links along a side of the net, over their family's
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
@@ -214,7 +214,7 @@ class Net(PointSystem[Run]):
     @property
     def links_touch(self) -> bool:
         """True if the links touch the sphere, else the points do."""
-        has_links = self.is_chain and self.x0[0].size > 1 and self.thickness == 0.0
+        has_links = self.is_chain and self.x0[0].size > 1
         return has_links and self.sphere is not None and self.contact.links and self.contact.law == "clipped"
 
     @property
@@ -241,10 +241,20 @@ class Net(PointSystem[Run]):
         """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
         return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_chain else GRID_COST)
 
+    @property
+    def is_strand(self) -> bool:
+        """True if links touch each other."""
+        return self.is_chain and self.thickness > 0.0
+
     def check_integrator(self, integrator: Integrator) -> None:
-        """Raises ValueError for a damped net and a method that allows no damping."""
+        """Raises ValueError for a damped net and a method that allows no damping, and for a rope that touches itself
+        and an implicit method: its long steps would lead through a strand.
+        """
         if integrator.undamped_only and self.is_damped:
             allowed = "a method with damping: this net is damped by links, drag or contact"
+            raise argument_error("integrator", integrator.name, allowed)
+        if integrator.implicit and self.is_strand:
+            allowed = "an explicit method, as this rope touches itself: implicit steps lead through its strands"
             raise argument_error("integrator", integrator.name, allowed)
 
     @property
@@ -276,6 +286,15 @@ class Net(PointSystem[Run]):
         ratios = (f.stiffness / stiffest if stiffest > 0.0 else 1.0 for f in self.families)
         families = (f._replace(stiffness=stiffness * r) for f, r in zip(self.families, ratios, strict=True))
         return dataclasses.replace(self, families=tuple(families))
+
+    @property
+    def most_pairs(self) -> int:
+        """Largest number of pairs within reach of each other that self-contact can hold."""
+        if self.thickness == 0.0:
+            return 0
+        # A link is near to as many links of another strand as are as long as it is thick.
+        thicknesses = self.thickness / max(self.families[0].rest, 1e-3 * self.thickness) if self.is_chain else 1.0
+        return math.ceil(PAIRS * self.x0[0].size * max(1.0, thicknesses))
 
     @property
     def bands(self) -> int:
@@ -343,6 +362,16 @@ class Net(PointSystem[Run]):
         )
         if self.is_chain and self.thickness == 0.0:
             return view
+        touch = record_of(
+            TouchArrays,
+            self,
+            row_spacing=self.spacing(1, 0),
+            col_spacing=self.families[0].rest if self.is_chain else self.spacing(0, 1),
+            pairs=np.full((self.most_pairs + 1, 2), -1),
+            seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
+        )
+        if self.is_chain:
+            return StrandArrays(*view, *touch)
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,
@@ -350,16 +379,12 @@ class Net(PointSystem[Run]):
             has_air=self.air is not None,
             air_drag=0.5 * air.density * air.drag,
             air_lift=0.5 * air.density * air.lift,
-            row_spacing=self.spacing(1, 0),
-            col_spacing=self.spacing(0, 1),
-            pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1),
-            seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             side=self.side_ratio,
             ends=ends,
             links=links,
             **components("wind_", air.wind),
         )
-        return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
+        return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *touch, *wide)
 
 
 def components(prefix: str, vector: Sequence[float]) -> dict[str, float]:

@@ -8,7 +8,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import check_law
 from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
-from sim.validation import argument_error, as_array, check_choice, check_number, check_positive, is_whole_number
+from sim.validation import (
+    argument_error,
+    as_array,
+    check_choice,
+    check_kind,
+    check_number,
+    check_positive,
+    is_whole_number,
+)
 from sim.water import EARTH_GRAVITY
 
 MAX_POINTS = 1_000_000
@@ -31,6 +39,7 @@ def rope(
     law: Any = "spring",
     contact: Contact | None = None,
     radius: float = 0.0,
+    self_contact: bool = False,
 ) -> Net:
     """A rope in the lab's units, at rest from `root` along -x; point 0 is the fixed root.
 
@@ -39,7 +48,9 @@ def rope(
     radius) [m]. damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
     law: of the links, a name in `LAWS` or its numbers, as `sim.springs.laws.stiffening.Stiffening(30.0)`.
     end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
-    radius: of the points, for contact [m].
+    radius: of the points and links, for contact [m]. self_contact: True: links of this radius push each other with the
+    contact's stiffness and damping, without friction. Links with less than a half circle of rope between them, which
+    the tightest bend needs, do not.
 
     Raises ValueError, naming the argument, its value and what is allowed.
 
@@ -56,6 +67,9 @@ def rope(
     check_number("drag", drag, "N s/m", 0)
     check_number("gravity", gravity, "m/s^2")
     check_number("radius", radius, "m", 0)
+    check_kind("self_contact", self_contact, bool, "True or False")
+    if self_contact and radius == 0.0:
+        raise argument_error("self_contact", self_contact, "False, as a rope of radius 0 has nothing that touches")
     check_place("root", root)
     if end is not None:
         check_place("end", end)
@@ -84,6 +98,7 @@ def rope(
         sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
         contact=contact,
         radius=float(radius),
+        thickness=2.0 * float(radius) if self_contact else 0.0,
     )
 
 

@@ -40,7 +40,6 @@ from sim.springs.analysis.accuracy import (
 from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
-from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, discover, integrator_named
 from sim.springs.integrators.implicit.tangent import (
     has_friction,
@@ -52,6 +51,7 @@ from sim.springs.integrators.implicit.tangent import (
 from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.points.line_arrays import LineArrays
+from sim.springs.points.near_pairs import count_touching
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
 from sim.validation import check_positive
@@ -122,13 +122,16 @@ class Gauge(NamedTuple):
 
 
 def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
-    """Largest number of others that a particle touches at x (3, rows, cols) [m]; None: as many as equal spheres can."""
+    """Largest number of others that a particle, or two links of a chain, touch at x (3, rows, cols) [m].
+
+    x: None: as many as equal spheres can.
+    """
     if x is None:
         return TOUCHING
     touching = np.zeros(x[0].size, np.int64)
     count_touching(np.ascontiguousarray(x).reshape(-1), net.kernel_view(1.0), touching)
     raise_if_stopped()
-    return int(touching.max())
+    return int(touching.max()) * (2 if net.is_chain else 1)
 
 
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:

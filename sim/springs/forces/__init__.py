@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 from sim.jit import chosen, generated, kernel, modules_of
 from sim.springs.forces.record import Absent, Force
 from sim.springs.forces.under_water import FORCES as UNDER_WATER
-from sim.springs.points.arrays import GridArrays, RopeArrays, by_net
+from sim.springs.points.arrays import GridArrays, RopeArrays, StrandArrays, by_net
 from sim.springs.points.line_arrays import LineArrays
 from sim.validation import argument_error, check_number
 
@@ -110,7 +110,12 @@ def each(
         names = {name: one for force in acting for name, one in kernels(force, net).items()}
         return generated("\n    ".join([head, sums.start, *calls, sums.end]), names, __name__, **options)
 
-    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=of(LineArrays, "lines"))
+    return by_net(
+        rope=of(RopeArrays, "rope"),
+        grid=of(GridArrays, "wide"),
+        lines=of(LineArrays, "lines"),
+        strand=of(StrandArrays, "strand"),
+    )
 
 
 def check_forces(forces: Any) -> tuple[Any, ...]:

@@ -157,11 +157,11 @@ def drift_wide(x, v, h, p, f, a, middle, with_account, ledger):
 
 
 # x += h v; where there is air, it pushes in the middle.
-drift = by_net(rope=drift_rope, grid=drift_wide, lines=drift_rope)
+drift = by_net(rope=drift_rope, grid=drift_wide, lines=drift_rope, strand=drift_rope)
 
 no_size = kernel(lambda x, p: 0, inline=True)
 wide_size = kernel(lambda x, p: x.shape[0] if p.has_air else 0, inline=True)
-air_scratch_size = by_net(rope=no_size, grid=wide_size, lines=no_size)
+air_scratch_size = by_net(rope=no_size, grid=wide_size, lines=no_size, strand=no_size)
 
 
 @kernel(allocates=False)

@@ -12,8 +12,8 @@ import math
 from sim.jit import kernel
 from sim.springs.forces.contact import clipped_flow
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
-from sim.springs.forces.record import Force
-from sim.springs.points.arrays import RopeArrays, push, span
+from sim.springs.forces.record import CHAINS, Force
+from sim.springs.points.arrays import push, span
 from sim.springs.points.each_link import each_link, stretch
 from sim.springs.points.link_places import links_near, place_motion, place_on_link, place_slip, push_on_link
 
@@ -202,6 +202,6 @@ def pair_blocks(link, x, v, t, g, p, pairs):
 
 
 FORCE = Force(
-    "link_contact", rank=41, nets=(RopeArrays,), acts="p.links_touch", accelerate=accelerate, damp=damp, energy=energy,
+    "link_contact", rank=41, nets=CHAINS, acts="p.links_touch", accelerate=accelerate, damp=damp, energy=energy,
     power=power, pins_power=pins_power, tangent=tangent, blocks=blocks, pair_blocks=pair_blocks, stores="contact",
 )  # fmt: skip

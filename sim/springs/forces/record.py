@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays
+from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays, StrandArrays
 from sim.springs.points.line_arrays import LineArrays
 
 WIDE_NETS = (GridArrays, ClothArrays)  # nets of several rows
-SPRING_NETS = (RopeArrays, *WIDE_NETS)
+CHAINS = (RopeArrays, StrandArrays)
+SPRING_NETS = (*CHAINS, *WIDE_NETS)
 LINES = (LineArrays,)  # lines under water
 NETS = (*SPRING_NETS, *LINES)
 

@@ -4,8 +4,8 @@ Damping is taken apart from the other forces only where h times its rate is smal
 decay of each, which is quick. A splitting is right only there. With y the rate of a stiff part times h, its steady
 speed is wrong by y^2/12 (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping: links and
 drag in one system (`sim.springs.kicks.formula`), drag alone exactly. Which of these it is depends on the net and the
-step alone, so that it is the same in every call. The normal damping of floor and sphere is inside the kick of each
-point or touching link; it is taken apart only where links and drag are one system.
+step alone, so that it is the same in every call. The normal damping of floor and sphere, and of a rope's contact with
+itself, is inside the kick of each point, link or pair; it is taken apart only where links and drag are one system.
 """
 
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from sim.springs.analysis.energy import account_size, close_damping, kinetic_ene
 from sim.springs.damping import damp_beside, damp_lines, damp_motion, damp_others, foresee_all, hold_all, other_acts
 from sim.springs.forces.contact import kick_touching
 from sim.springs.forces.link_contact import damp_kicked
+from sim.springs.forces.strand_contact import damp_strands_kicked
 from sim.springs.kicks.chain import factor_chain, make_chain, solve_chain
 from sim.springs.kicks.dampers import (
     MOST_CHANGES,
@@ -90,10 +91,10 @@ class KickRoom(NamedTuple):
     system: Any  # `ChainSystem` of a rope, `SheetSystem` of another net, `LinesRoom` of lines
 
 
-make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)))
+make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)), strand=make_chain)
 keep_factors = kernel(lambda system, dampers, p: None, inline=True)
-factor = by_net(rope=factor_chain, grid=keep_factors)
-solve = by_net(rope=solve_chain, grid=solve_sheet)
+factor = by_net(rope=factor_chain, grid=keep_factors, strand=factor_chain)
+solve = by_net(rope=solve_chain, grid=solve_sheet, strand=solve_chain)
 
 
 @kernel
@@ -196,7 +197,7 @@ def close_kick(v, a, s, p, kinetic, put_in, mean, ledger):
 
 @kernel(inline=True)
 def kick_alone(x, v, a, t, s, room, p, with_account):
-    """`kick_points` without the damping of links that touch the sphere."""
+    """`kick_points` without the damping of links that touch the sphere or each other."""
     n, drag = np.uint64(p.rows * p.cols), p.drag if room.kind == FREE else 0.0
     if touches(x, t, p, False) or touches(x, t, p, True):
         return kick_touching(x, v, a, drag, t, s, p, room.mean)
@@ -212,10 +213,29 @@ def kick_alone(x, v, a, t, s, room, p, with_account):
     return 0.0
 
 
-# Normal damping of links that touch the sphere, in the kick of their points.
+@kernel(allocates=False)
+def damp_all_kicked(x, v, a, mean, t, s, p, reverse):
+    work = 0.0
+    for turn in range(2):
+        if in_turn(turn, 2, reverse) == 0:
+            work += damp_kicked(x, v, a, mean, t, s, p, reverse)
+        else:
+            damp_strands_kicked(x, v, a, mean, s, p, reverse)
+    return work
+
+
+# Normal damping of links that touch the sphere or each other, in the kick of their points.
 damp_links_kicked = by_net(
-    rope=damp_kicked, grid=kernel(lambda x, v, a, mean, t, s, p, reverse: 0.0, inline=True)
-)  # fmt: skip
+    rope=damp_kicked,
+    grid=kernel(lambda x, v, a, mean, t, s, p, reverse: 0.0, inline=True),
+    strand=damp_all_kicked,
+)
+# True if links touch each other.
+strands_touch = by_net(
+    rope=kernel(lambda p: False, inline=True),
+    grid=kernel(lambda p: False, inline=True),
+    strand=kernel(lambda p: True, inline=True),
+)
 
 
 @kernel(allocates=False)
@@ -231,7 +251,8 @@ def kick_points(x, v, a, t, s, closing, room, p, with_account):
 @kernel(inline=True)
 def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
     """The forces of position, and the damping that is inside of their kick."""
-    if room.kind != WHOLE and not (p.has_floor or p.has_sphere or (room.kind == FREE and p.drag > 0.0)):
+    touches_anything = p.has_floor or p.has_sphere or strands_touch(p)
+    if room.kind != WHOLE and not (touches_anything or (room.kind == FREE and p.drag > 0.0)):
         add_scaled(v, s, a)
         return
     kinetic = kinetic_energy(v, p) if with_account else 0.0

@@ -90,7 +90,7 @@ def accelerate_grid(x, v, p, b, c, f, a):
     scale_rows(p.inverse_masses, n, a, n + n)
 
 
-accelerate_links = by_net(rope=accelerate_rope, grid=accelerate_grid, cloth=accelerate_cloth)
+accelerate_links = by_net(rope=accelerate_rope, grid=accelerate_grid, cloth=accelerate_cloth, strand=accelerate_rope)
 
 
 add_others = each("accelerate", "x, v, t, p, with_damping, f, a", "none", noalias=True, inline=True)
@@ -130,11 +130,13 @@ def accelerate_lines(x, v, t, p, with_damping, f, a):
 accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide, lines=accelerate_lines)
 
 
+chain_scratch_size = kernel(lambda p: 3 * (p.cols + 1), inline=True)
 scratch_size = by_net(
-    rope=kernel(lambda p: 3 * (p.cols + 1), inline=True),
+    rope=chain_scratch_size,
     grid=kernel(lambda p: 3 * (p.cols + 1) + wind_scratch_size(p), inline=True),
     cloth=kernel(lambda p: p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p), inline=True),
     lines=kernel(lambda p: 0, inline=True),
+    strand=chain_scratch_size,
 )
 
 

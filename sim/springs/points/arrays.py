@@ -62,8 +62,20 @@ class RopeArrays(NamedTuple):
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption
 
 
+class TouchArrays(NamedTuple):
+    """Extra kernel data of nets that may touch themselves, see `sim.springs.points.near_pairs`."""
+
+    thickness: float  # [m] at which particles, or links of a chain, push each other, 0: never
+    row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
+    col_spacing: float
+    # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for; in [-1, 1] the most particles
+    # or links that were left out as the list was full
+    pairs: NDArray[np.int64]
+    seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
+
+
 class WideArrays(NamedTuple):
-    """Extra kernel data of nets that are no chains."""
+    """Further kernel data of nets that are no chains."""
 
     has_air: bool
     wind_x: float  # [m/s]
@@ -71,31 +83,25 @@ class WideArrays(NamedTuple):
     wind_z: float
     air_drag: float  # rho C_D / 2 [kg/m^3]
     air_lift: float
-    thickness: float  # [m] at which particles of the net push each other, 0: never
-    row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
-    col_spacing: float
-    # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for; in [-1, 1] the most particles
-    # that were left out as the list was full
-    pairs: NDArray[np.int64]
-    seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
     ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 
 
-# A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
-# arrays, with no more than nets of that class can need: numba tells them apart by their types.
-GridArrays = namedtuple("GridArrays", RopeArrays._fields + WideArrays._fields)
-ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
+# A chain that touches itself, a net of any families of links, and one of those of CLOTH. A kernel is compiled for each
+# of the four classes of arrays, with no more than nets of that class can need: numba tells them apart by their types.
+StrandArrays = namedtuple("StrandArrays", RopeArrays._fields + TouchArrays._fields)
+GridArrays = namedtuple("GridArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
+ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
 
 
-def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
+def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None, strand: Any = None) -> Any:
     """A kernel that stands for one of these, by the class of its argument p.
 
-    cloth: None for that of any other net. lines: those under water; None if they have no such kernel.
+    cloth, strand: None for that of any other net. lines: those under water; None if they have no such kernel.
     """
-    variants = {RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid}
+    variants = {RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid, StrandArrays: strand or grid}
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
@@ -164,8 +170,9 @@ def link_of_line(p, q):
 
 listed = kernel(lambda p: p.ends.shape[0], inline=True)
 # Number of links, and link q.
-link_count = by_net(rope=kernel(lambda p: p.cols - 1, inline=True), grid=listed, lines=listed)
-link_at = by_net(rope=next_link, grid=listed_link, lines=link_of_line)
+beside = kernel(lambda p: p.cols - 1, inline=True)
+link_count = by_net(rope=beside, grid=listed, lines=listed, strand=beside)
+link_at = by_net(rope=next_link, grid=listed_link, lines=link_of_line, strand=next_link)
 
 
 @kernel(inline=True)

@@ -172,6 +172,7 @@ def each_load(result: str = "nothing", *, noalias: bool = False) -> Callable[[Ca
         pieces = [(SURFACE, {"surface": surface, "item": LOAD_OF_POINT, **values}) for surface in ("False", "True")]
         of_points = loop(function, "of_loads", pieces, result, noalias=noalias)
         pieces.append((LINKS, {"item": LOAD_BY_LINKS, **values}))
-        return by_net(rope=loop(function, "of_loads_and_links", pieces, result, noalias=noalias), grid=of_points)
+        of_chain = loop(function, "of_loads_and_links", pieces, result, noalias=noalias)
+        return by_net(rope=of_chain, grid=of_points, strand=of_chain)
 
     return made

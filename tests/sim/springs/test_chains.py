@@ -7,7 +7,7 @@ import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, PinPath, rope
 from sim.springs.net import Net
-from sim.springs.points.arrays import GridArrays, RopeArrays
+from sim.springs.points.arrays import GridArrays, RopeArrays, StrandArrays
 from sim.springs.state import State, advance
 from tests.sim.springs.nets import DAMPABLE
 
@@ -60,7 +60,7 @@ def test_a_column_moves_as_a_row_does(name):
 def test_kernels_follow_the_shape_of_a_net_and_its_forces(mass, turned):
     net = column_of(rope(9, mass=mass)) if turned else rope(9, mass=mass)
     assert type(net.kernel_view(1.0)) is RopeArrays
-    assert type(dataclasses.replace(net, thickness=0.01).kernel_view(1.0)) is GridArrays
+    assert type(dataclasses.replace(net, thickness=0.01).kernel_view(1.0)) is StrandArrays
     other = net.families[0]._replace(di=2 if turned else 0, dj=0 if turned else 2)
     assert type(dataclasses.replace(net, families=(*net.families, other)).kernel_view(1.0)) is GridArrays
 

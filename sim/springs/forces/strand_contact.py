@@ -1,0 +1,229 @@
+"""A chain against itself: links are capsules, and push each other apart where they are nearer than the thickness.
+
+Two links store k/2 depth^2 at their places that are nearest to each other (`sim.springs.points.link_pairs`). The force
+acts along the line between these places and goes to the ends of each link by its place, (1 - s, s): momentum and
+angular momentum stay. Where two links of a strand touch another at their common point, both push. The places of two
+parallel links may lie anywhere along their overlap: there the force is not continuous in the angle between them.
+
+Damping acts along the same line, and never pulls. There is no friction between strands. Implicit methods refuse such
+a chain (`Net.check_integrator`), so that the force has no blocks of their matrix.
+"""
+
+import math
+
+from sim.jit import kernel
+from sim.springs.forces.contact import clipped_flow
+from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
+from sim.springs.forces.record import Force
+from sim.springs.points.arrays import StrandArrays, span
+from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
+from sim.springs.points.near_pairs import pairs_at_hand, refresh_pairs
+from sim.springs.points.order import in_turn
+
+
+@kernel(inline=True)
+def depth_of(p, pair):
+    """Depth [m] of a touching pair, 0 if it does not touch or its places coincide."""
+    return max(0.0, p.thickness - pair.distance) if pair.distance > 0.0 else 0.0
+
+
+@kernel(inline=True)
+def pair_number(x, p, q):
+    return pair_at(x, p.cols, p.pairs[q, 0], p.pairs[q, 1])
+
+
+@kernel(inline=True)
+def side_mobility(p, a, s):
+    return (1.0 - s) * (1.0 - s) * p.inverse_masses[a] + s * s * p.inverse_masses[a + 1]
+
+
+@kernel(inline=True)
+def mobility(p, pair):
+    """Inverse mass [1/kg] of the distance of two places."""
+    return side_mobility(p, pair.a, pair.s) + side_mobility(p, pair.b, pair.t)
+
+
+@kernel(inline=True)
+def push_of(v, p, pair, depth, with_damping):
+    """Force [N] that pushes two places apart."""
+    damping = p.contact_b * rate_of(v, p.cols, pair) if with_damping else 0.0
+    return max(0.0, p.contact_k * depth - damping)
+
+
+@kernel(inline=True)
+def add_kick(out, p, pair, size):
+    """Change of velocities by an impulse `size` [N s] that pushes two places apart."""
+    n, w = p.cols, p.inverse_masses
+    kick_point(out, n, pair.a, -(1.0 - pair.s) * w[pair.a] * size, pair)
+    kick_point(out, n, pair.a + 1, -pair.s * w[pair.a + 1] * size, pair)
+    kick_point(out, n, pair.b, (1.0 - pair.t) * w[pair.b] * size, pair)
+    kick_point(out, n, pair.b + 1, pair.t * w[pair.b + 1] * size, pair)
+
+
+@kernel(inline=True)
+def kick_point(out, n, j, size, pair):
+    out[j] += size * pair.nx
+    out[n + j] += size * pair.ny
+    out[2 * n + j] += size * pair.nz
+
+
+@kernel(allocates=False)
+def accelerate(x, v, t, p, with_damping, f, a):
+    for q in range(refresh_pairs(x, p)):
+        pair = pair_number(x, p, q)
+        depth = depth_of(p, pair)
+        if depth > 0.0:
+            add_kick(a, p, pair, push_of(v, p, pair, depth, with_damping))
+
+
+@kernel(allocates=False)
+def damp_strands_kicked(x, v, a, mean, s, p, reverse):
+    """Normal damping in a kick for a time s [s] by the accelerations a, after these have changed v: pair by pair.
+
+    For one pair kick and damping together are exact at its depth, and so is the mean velocity, if there is room for it:
+    the distance follows u' = pull - b w u from its rate before the kick, w its mobility. The accelerations are those at
+    x, so that the list of pairs is, too.
+    """
+    n, count = p.cols, pairs_at_hand(x, p)
+    for turn in range(count):
+        pair = pair_number(x, p, in_turn(turn, count, reverse))
+        depth, w = depth_of(p, pair), mobility(p, pair)
+        if depth == 0.0 or w == 0.0:
+            continue
+        kicked, most = rate_of(v, n, pair), p.contact_k * depth
+        pull = rate_of(a, n, pair) if a.shape[0] > 0 else 0.0
+        edge, before = most / p.contact_b if p.contact_b > 0.0 else math.inf, kicked - s * pull
+        after, normal = clipped_flow(before, pull, pull - most * w, p.contact_b * w, 0.0, edge, s)
+        add_kick(v, p, pair, (after - kicked) / w)
+        if mean.shape[0] > 0:
+            add_kick(mean, p, pair, (normal - before - 0.5 * s * pull) / w)
+
+
+@kernel(allocates=False)
+def damp(x, v, t, s, p, reverse):
+    """Normal damping alone for a time s [s], pair by pair, exact for one."""
+    damp_strands_kicked(x, v, v[:0], v[:0], s, p, reverse)
+    return 0.0
+
+
+@kernel(allocates=False)
+def energy(x, t, p):
+    """1/2 k depth^2 over the touching pairs [J]."""
+    total = 0.0
+    for q in range(refresh_pairs(x, p)):
+        depth = depth_of(p, pair_number(x, p, q))
+        total += 0.5 * p.contact_k * depth * depth
+    return total
+
+
+@kernel(inline=True)
+def pinned_rate(v, p, a, s, pair):
+    """The part of the velocity of a place that pins give it, along the line between the places."""
+    n, w, rate = p.cols, p.inverse_masses, 0.0
+    for e in range(2):
+        j, part = a + e, s if e == 1 else 1.0 - s
+        if w[j] == 0.0:
+            rate += part * (v[j] * pair.nx + v[n + j] * pair.ny + v[2 * n + j] * pair.nz)
+    return rate
+
+
+@kernel(allocates=False)
+def power(x, v, t, p, with_damping):
+    """(dissipated, put in by moving pins) [W] through the touching pairs."""
+    dissipated = work = 0.0
+    if not with_damping and p.pins.shape[0] == 0:
+        return dissipated, work
+    for q in range(refresh_pairs(x, p)):
+        pair = pair_number(x, p, q)
+        depth = depth_of(p, pair)
+        if depth > 0.0:
+            force = push_of(v, p, pair, depth, with_damping)
+            dissipated -= (force - p.contact_k * depth) * rate_of(v, p.cols, pair)
+            work += force * (pinned_rate(v, p, pair.a, pair.s, pair) - pinned_rate(v, p, pair.b, pair.t, pair))
+    return dissipated, work
+
+
+@kernel
+def pins_power(x, v, t, p):
+    """Power [W] that moving pins put in through the damping of the touching pairs."""
+    if p.pins.shape[0] == 0:
+        return 0.0
+    return power(x, v, t, p, True)[1] - power(x, v, t, p, False)[1]
+
+
+@kernel(inline=True)
+def dot(ax, ay, az, bx, by, bz):
+    return ax * bx + ay * by + az * bz
+
+
+@kernel(inline=True)
+def turning(tt, uu, tu, first, second, pair):
+    """Motion of both places along their links, as parts of these, from the slopes of half the squared distance."""
+    of_first, of_second = 0.0 < pair.s < 1.0, 0.0 < pair.t < 1.0
+    square = tt * uu - tu * tu
+    if of_first and of_second and square > 1e-12 * tt * uu:
+        return (uu * first + tu * second) / square, (tu * first + tt * second) / square
+    if of_first:
+        return first / tt, 0.0
+    return 0.0, second / uu if of_second else 0.0
+
+
+@kernel(inline=True)
+def add_at(out, n, j, fx, fy, fz):
+    out[j] += fx
+    out[n + j] += fy
+    out[2 * n + j] += fz
+
+
+@kernel(noalias=True, allocates=False)
+def tangent(x, u, t, p, part, longest, out):
+    """Every touching pair: K and D = b n n^T of the distance of its places, with the change of these places in K.
+
+    With w the motion of the second place relative to the first, d n the vector between them, and T, U the links, half
+    the squared distance has the second derivative |w|^2 - g M^-1 g. Here g = (d n r_a + T w, -d n r_b - U w) with r the
+    motion of the second end of a link relative to its first, and M = [T T, -T U; -T U, U U], for the places that are
+    no ends. K follows from k/2 (thickness - d)^2.
+    """
+    if part in (TRANSVERSE, FRICTION):
+        return
+    n = p.cols
+    for q in range(refresh_pairs(x, p)):
+        pair = pair_number(x, p, q)
+        depth = depth_of(p, pair)
+        if depth == 0.0:
+            continue
+        nx, ny, nz = pair.nx, pair.ny, pair.nz
+        wx, wy, wz = opening_of(u, n, pair)
+        along = dot(nx, ny, nz, wx, wy, wz)
+        if part == DAMPING:
+            size, ex, ey, ez = p.contact_b * along, 0.0, 0.0, 0.0
+            first = second = 0.0
+        else:
+            # -k depth/d of the second derivative of half the squared distance, less its part along the line.
+            d, over = pair.distance, -p.contact_k * depth / pair.distance
+            tx, ty, tz = span(x, n, pair.a, pair.a + 1)
+            ux, uy, uz = span(x, n, pair.b, pair.b + 1)
+            ax, ay, az = span(u, n, pair.a, pair.a + 1)
+            bx, by, bz = span(u, n, pair.b, pair.b + 1)
+            first, second = turning(
+                dot(tx, ty, tz, tx, ty, tz), dot(ux, uy, uz, ux, uy, uz), dot(tx, ty, tz, ux, uy, uz),
+                d * dot(nx, ny, nz, ax, ay, az) + dot(tx, ty, tz, wx, wy, wz),
+                -d * dot(nx, ny, nz, bx, by, bz) - dot(ux, uy, uz, wx, wy, wz), pair,
+            )  # fmt: skip
+            size = (p.contact_k - over) * along
+            ex = over * (wx - first * tx + second * ux)
+            ey = over * (wy - first * ty + second * uy)
+            ez = over * (wz - first * tz + second * uz)
+            first, second = over * d * first, over * d * second
+        fx, fy, fz = size * nx + ex, size * ny + ey, size * nz + ez
+        s, r = pair.s, pair.t
+        add_at(out, n, pair.a, first * nx - (1.0 - s) * fx, first * ny - (1.0 - s) * fy, first * nz - (1.0 - s) * fz)
+        add_at(out, n, pair.a + 1, -first * nx - s * fx, -first * ny - s * fy, -first * nz - s * fz)
+        add_at(out, n, pair.b, (1.0 - r) * fx - second * nx, (1.0 - r) * fy - second * ny, (1.0 - r) * fz - second * nz)
+        add_at(out, n, pair.b + 1, r * fx + second * nx, r * fy + second * ny, r * fz + second * nz)
+
+
+FORCE = Force(
+    "strand_contact", rank=31, nets=(StrandArrays,), accelerate=accelerate, damp=damp, energy=energy, power=power,
+    pins_power=pins_power, tangent=tangent, stores="contact",
+)  # fmt: skip

@@ -266,11 +266,14 @@ class SceneSettings:
         return self.words_to(self.history.next, "forward to")
 
     def words_to(self, settings: EarlierSettings | None, way: str) -> str:
-        """The act between the present settings and others of the history, and the name of these; "" without others."""
+        """The act between the present settings and others of the history, and the name of these; "" without others.
+
+        The run of another scene is not kept.
+        """
         if settings is None:
             return ""
         if settings.scene != self.kind.name:
-            return f"{way} {in_words(settings.scene)}"
+            return f"{way} {in_words(settings.scene)}, in a new run"
         if settings.preset != self.loaded:
             return f"{settings.words}, {way} {settings.preset}"
         changed, parameters = changed_names(self.params, settings.params), parameters_of(self.params)

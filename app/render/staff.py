@@ -69,7 +69,7 @@ class Staff:
 
 
 class WaveStaff:
-    """A staff that stands in the sea: bands, a ring at still water, and the height at every second band."""
+    """A staff that stands in the sea: bands, a ring at still water, and the height at every second band, left of it."""
 
     def __init__(self, server: viser.ViserServer, place: Vector) -> None:
         """place: x and y [m], and the significant height of the waves [m], which sets the bands."""
@@ -87,8 +87,8 @@ class WaveStaff:
             ),
             *(
                 scene.add_label(
-                    f"/staff/{i}", f"{number(i * band)} m" if i else "still water", anchor="center-left",
-                    position=(x + 1.6 * radius, y, i * band),
+                    f"/staff/{i}", f"{number(i * band)} m" if i else "still water", anchor="center-right",
+                    position=(x - 1.6 * radius, y, i * band),
                 )
                 for i in range(0, above + 1, 2)
             ),

@@ -26,3 +26,12 @@ test("a label that had to be raised by more than 12 of its heights is hidden and
   assert.equal(found.indexOf(null), 11);
   assert.ok(found.slice(11).every((raise) => raise === null));
 });
+
+test("labels that begin in the picture end in it, and those that begin above it stay there", () => {
+  const labels = [0.7, 0.72, 0.8, 0.95, 1.2].map((bottom) => label(0, bottom)), shifts = raises(labels, 1);
+  const found = labels.map((one, k) => one.bottom + HIGH * (shifts[k] ?? NaN));
+  assert.ok(found.slice(0, 4).every((bottom) => bottom <= 1 - HIGH + 1e-9));
+  assert.equal(shifts[4], 0);
+  const inOrder = [...found].sort((a, b) => a - b);
+  assert.ok(inOrder.slice(1).every((bottom, k) => bottom - inOrder[k] >= 1.15 * HIGH - 1e-9));
+});

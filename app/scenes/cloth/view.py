@@ -62,12 +62,24 @@ def checks(rows: int, cols: int) -> np.ndarray:
     return ((1.0 - share) * CLOTH_COLOUR + share * CHECK_COLOUR).astype(np.float32) / 255
 
 
+# Corners of a loose cloth while it falls onto a sphere: parts of its half width from the middle, and below the start.
+DRAPING = ((1.0, 0.0), (0.92, 0.65), (0.8, 1.3))
+
+
 def reach_of(params: ClothParams) -> np.ndarray:
-    """Points (n, 3) [m] around a level cloth and the stroke of its sphere."""
+    """Points (n, 3) [m] around a level cloth, its way where it is loose, and the stroke of its sphere."""
     x, y, z = corner(params)
-    sphere, reach = np.array(sphere_home(params)), params.sphere_radius + params.bob
-    corners = [(side * x, end * y, z) for side in (-1.0, 1.0) for end in (-1.0, 1.0)]
-    return np.array([*corners, sphere + (0.0, 0.0, reach), sphere - (0.0, 0.0, reach)])
+    x, y = abs(x), abs(y)
+    ways = ((1.0, 0.0),) if params.pinned != "free" else DRAPING if params.sphere else ((1.0, 0.0), (1.0, z / x))
+    points = [
+        (side * out * x, end * out * y, max(z - down * x, 0.0))
+        for side in (-1.0, 1.0) for end in (-1.0, 1.0) for out, down in ways
+    ]  # fmt: skip
+    if params.sphere:
+        sphere_x, sphere_y, height = sphere_home(params)
+        reach = params.sphere_radius + params.bob
+        points += [(sphere_x, sphere_y, height - reach), (sphere_x, sphere_y, height + reach)]
+    return np.array(points)
 
 
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
@@ -77,10 +89,10 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
     CAMERA = ((0.7, -1.5, 1.9), (0.12, 0.0, 1.12))  # position, target [m]; of a level cloth
-    FALLEN = ((0.55, -1.2, 1.55), (0.08, 0.0, 0.88))  # the same of one that nothing holds
     HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.32))  # the same of one that hangs
-    # Bearing and pitch [rad] of the camera where a sphere is under a held cloth, and the part of the picture for both.
-    BESIDE, FRAME = (math.radians(291.0), math.radians(9.0)), (0.74, -0.8, 0.75)
+    # Of the camera over a cloth with a sphere or a loose one: bearing, pitch [rad] where it is held and where it falls,
+    # and the part of the picture that they fill.
+    BEARING, PITCH, STEEP_PITCH, FRAME = math.radians(291.0), math.radians(9.0), math.radians(24.0), (0.74, -0.8, 0.75)
     FIELD_OF_VIEW = 1.3  # [rad]
     WARM_UP: ClassVar[Pieces] = {"packing": compile_packing}
 
@@ -107,9 +119,11 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         """Position and target [m] of a camera that has not been moved."""
         if params.start != "level":
             return self.HANGING
-        if params.sphere and params.pinned != "free":
-            return framing_view(reach_of(params), *self.BESIDE, self.FIELD_OF_VIEW, self.FRAME)
-        return self.FALLEN if params.pinned == "free" else self.CAMERA
+        falls = params.pinned == "free"
+        if not falls and not params.sphere:
+            return self.CAMERA
+        pitch = self.STEEP_PITCH if falls else self.PITCH
+        return framing_view(reach_of(params), self.BEARING, pitch, self.FIELD_OF_VIEW, self.FRAME)
 
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""

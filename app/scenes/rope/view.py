@@ -36,7 +36,8 @@ HANGER_RADIUS, HANGER_HEIGHT = 0.012, 25.0  # [m] of the rod that the root hangs
 SPHERE_ARROW_LENGTH = 0.45  # [m]
 SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
-SHOWN_SWING = 1.75  # lengths of the rope in the picture's height, so that it stays in the picture as it swings
+SHOWN_SWING = 2.15  # lengths of the rope in the picture's height, so that it stays in the picture as it swings
+START_SIDE = 0.15  # lengths of the rope from the root towards its start, to the target; with drag it swings less beyond
 SHOWN_UNDAMPED_SWING = 2.6  # the same without drag: it swings to both sides as far as it began
 ELEVATION = 0.25  # [rad] of the camera over its target, so that the shadow on the floor is in the picture
 LOWER = 0.03  # heights of the picture from the middle of the rope down to the target
@@ -141,10 +142,11 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         fall = length + min(stretch, length)
         if params.floor:
             fall = min(fall, ROOT[2])
-        height = max(fall / SHOWN_SHARE, (SHOWN_SWING if net.drag > 0.0 else SHOWN_UNDAMPED_SWING) * length)
+        swing, side = (SHOWN_SWING, START_SIDE) if net.drag > 0.0 else (SHOWN_UNDAMPED_SWING, 0.0)
+        height, x = max(fall / SHOWN_SHARE, swing * length), -side * length
         distance, target = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW), ROOT[2] - 0.5 * fall - LOWER * height
-        position = 0.0, -distance * math.cos(ELEVATION), target + distance * math.sin(ELEVATION)
-        return position, (0.0, 0.0, target)
+        position = x, -distance * math.cos(ELEVATION), target + distance * math.sin(ELEVATION)
+        return position, (x, 0.0, target)
 
     def draw(self, frame: RopeFrame) -> TensionRope:
         """A drawing for the number of points of a frame."""

@@ -9,6 +9,8 @@ from app.scenes import NAMES, scene_named, view_named
 from app.scenes.contract import AnyKind
 from app.scenes.mooring.arrangement import first_places
 from app.scenes.setups import make_setup
+from app.scenes.square_sea.parameters import DRAUPNER, PRESETS, SquareSeaParams, gauge_home
+from app.scenes.square_sea.view import SquareSeaView, camera_of
 from tests.app.render.test_cameras import in_picture
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
@@ -64,9 +66,20 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
     assert 0.4 < max(shares) < 0.75, shares
 
 
-@pytest.mark.parametrize(("name", "preset", "duration"), [("rope", "Pendulum", 2.2), ("cloth", "Trampoline", 0.8)])
+@pytest.mark.parametrize(
+    ("name", "preset", "duration"),
+    [
+        ("rope", "Pendulum", 2.2),
+        ("rope", "Lab code: 10 points", 2.2),
+        ("rope", "Over the sphere", 1.0),
+        ("rope", "Stiff rope", 0.2),
+        ("rope", "Shaken at the root", 2.0),
+        ("cloth", "Trampoline", 0.8),
+        ("cloth", "Drape over the sphere", 0.6),
+    ],
+)
 def test_the_first_view_holds_the_whole_motion(name: str, preset: str, duration: float) -> None:
-    """A period of the pendulum, and the upper half of the stroke of the sphere."""
+    """A period of the pendulum, ropes from their start, half the stroke of a sphere, a fall on a sphere."""
     kind, view = scene_named(name), view_named(name)
     params = make_setup(kind, preset).params
     scene = kind.make(params)
@@ -83,6 +96,24 @@ def test_the_first_view_holds_the_whole_motion(name: str, preset: str, duration:
     x, y = abs(np.concatenate(seen)).max(axis=0)
     assert 0.6 < x < SMALL_ASPECT
     assert y < 0.95
+
+
+@pytest.mark.parametrize(
+    ("preset", "trough", "crest"),
+    [("Draupner", -8.0, DRAUPNER.crest), ("Peregrine breather", -1.5, 2.5), ("Steep storm", -2.5, 5.6)],
+)
+def test_the_first_view_holds_the_wave_beside_the_staff_from_trough_to_crest(
+    preset: str, trough: float, crest: float
+) -> None:
+    """In [m] over still water. The crest stands against the sky."""
+    params = SquareSeaParams(**PRESETS[preset])
+    position, target = camera_of(params)
+    staff = np.array([(*gauge_home(params), height) for height in (trough, 0.0, crest)])
+    x, y = in_picture(position, target, SquareSeaView.FIELD_OF_VIEW, staff).T
+    assert abs(x).max() < SMALL_ASPECT
+    assert abs(y).max() < 0.9
+    assert y[2] - y[0] > 0.6
+    assert crest > position[2]
 
 
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])

@@ -59,10 +59,10 @@ def test_an_undo_after_another_scene_goes_back_to_the_first_with_its_parameters_
     lab.settings.open_first_view_of("race")
     wait_for(lambda: lab.is_open and lab.settings.kind.name == "race")
     after = screen(lab)
-    assert lab.settings.undo_words == f"back to {in_words('rope')}"
+    assert lab.settings.undo_words == f"back to {in_words('rope')}, in a new run"
     lab.settings.undo()
     wait_for(lambda: shows(lab, before))
-    assert lab.settings.redo_words == f"forward to {in_words('race')}"
+    assert lab.settings.redo_words == f"forward to {in_words('race')}, in a new run"
     lab.settings.undo()
     assert lab.settings.params == dataclasses.replace(before.params, mass=lab.settings.params_of("Pendulum").mass)  # type: ignore[attr-defined]
     lab.settings.redo()
@@ -84,7 +84,8 @@ def test_an_undo_pressed_twice_goes_through_one_scene_and_acts_meanwhile_are_kep
     wait_for(lambda: shows(lab, second) and lab.requests.waiting.empty())
     time.sleep(0.3)  # the second press is taken out of the queue before its scene would be opened
     with lab.changing:
-        assert (lab.settings.undo_words, lab.settings.redo_words) == ("back to Rope", "forward to Square sea")
+        words = lab.settings.undo_words, lab.settings.redo_words
+        assert words == ("back to Rope, in a new run", "forward to Square sea, in a new run")
     with lab.changing:
         lab.settings.undo()
         wait_for(lambda: lab.requests.waiting.empty())  # it waits for the scene

@@ -1,6 +1,6 @@
 // Labels on a separate canvas over the picture: at the full resolution of the screen at every quality, without overlaps.
 //
-// A label that would cover another is raised above it, with a line down to its place. Images and clips contain the labels, and
+// A label that would cover another is raised above it, or lowered at the upper edge of the picture, with a line to its place. Images and clips contain the labels, and
 // so does the page without this script.
 //
 // Of viser this file uses the meshes of its labels, which stand in one group: those with the uniform uLabelData, a texture
@@ -18,7 +18,8 @@ import { replaceShader } from "../shading/shaders.js";
 import { raises } from "./label_layout.js";
 
 const LABEL_TEXTURE = 4096; // [pixels] width of viser's texture of places
-const MAX_LEADERS = 64; // lines from raised labels to their places
+const MAX_LEADERS = 64; // lines from moved labels to their places
+const TOP = 1; // the upper edge of the picture
 const LEADER_WIDTH = 0.1; // of such a line, in heights of a label
 const LEADER_FRAGMENT = "void main() { gl_FragColor = vec4(0.45, 0.49, 0.54, 1.0); }";
 // The colours of labels on a dark floor. If a new viser has other lines, labels keep their colours.
@@ -34,7 +35,7 @@ let leaders = null; // the mesh of all lines
 /** @type {three.Renderer | false | null} */
 let overlay = null; // the renderer of the canvas over the picture; false if the browser refuses one
 /** @type {Map<number, [from: number[], to: number[]]>} */
-let raised = new Map(); // index of a raised label -> its place in viser, and its drawn place, [x, y, z] each
+let raised = new Map(); // index of a moved label -> its place in viser, and its drawn place, [x, y, z] each
 
 /** @param {three.Scene} scene */
 function findLabels(scene) {
@@ -96,14 +97,14 @@ function labelBoxes({ geometry, material }, camera) {
   return boxes;
 }
 
-// Raise labels, the lowest first, until none covers another.
+// Move labels, the lowest first, until none covers another.
 /** @param {three.Mesh} mesh @param {three.Camera} camera */
 function arrangeLabels(mesh, camera) {
   const { value: texture } = mesh.material.uniforms.uLabelData, numbers = texture.image.data;
   const boxes = labelBoxes(mesh, camera).sort((a, b) => a.y - b.y || a.index - b.index), lines = [];
   const up = camera.position.clone().setFromMatrixColumn(camera.matrixWorld, 1);
   raised = new Map();
-  for (const [n, raise] of raises(boxes).entries()) {
+  for (const [n, raise] of raises(boxes, TOP).entries()) {
     const box = boxes[n];
     if (raise === null) numbers[box.at + 3] = 0;
     if (!raise) continue;
@@ -116,7 +117,8 @@ function arrangeLabels(mesh, camera) {
   drawLeaders(mesh, lines.slice(0, MAX_LEADERS));
 }
 
-// A line is a narrow rectangle below the place of a label, as viser's vertex shader draws them.
+// A line is a narrow rectangle below the place of a raised label, or above that of a lowered one, as viser's vertex shader draws
+// them.
 /** @param {three.Mesh} mesh @param {{ k: number, index: number, rows: number, length: number }[]} lines */
 function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
   if (!leaders && (!lines.length || !labelGroup)) return;
@@ -138,7 +140,7 @@ function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
     const width = LEADER_WIDTH * rows;
     aLabelIndex.setX(line, index);
     aParams.setXY(line, 1, geometry.attributes.aParams.getY(k));
-    aRect.setXYZW(line, -width / 2, -length, width, length);
+    aRect.setXYZW(line, -width / 2, Math.min(-length, 0), width, Math.abs(length));
   });
   leaders.geometry.instanceCount = lines.length;
   for (const attribute of [aLabelIndex, aParams, aRect]) attribute.needsUpdate = true;

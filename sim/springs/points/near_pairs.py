@@ -7,6 +7,7 @@ the two sides of the tightest fold, a half circle as wide as the thickness.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def particle_distance(x, p, a, b):
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-def by_parts(particles, links):
+def by_parts(particles: Any, links: Any) -> Any:
     """A kernel for nets whose particles touch, and for chains, whose links do."""
     return by_net(rope=links, grid=particles, strand=links)
 

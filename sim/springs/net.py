@@ -292,7 +292,7 @@ class Net(PointSystem[Run]):
         """Largest number of pairs within reach of each other that self-contact can hold."""
         if self.thickness == 0.0:
             return 0
-        # A link is near to as many links of another strand as are as long as it is thick.
+        # Along a thickness of another strand lie this many of its links, all within reach of one link.
         thicknesses = self.thickness / max(self.families[0].rest, 1e-3 * self.thickness) if self.is_chain else 1.0
         return math.ceil(PAIRS * self.x0[0].size * max(1.0, thicknesses))
 

@@ -124,7 +124,7 @@ class Gauge(NamedTuple):
 def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
     """Largest number of others that a particle, or two links of a chain, touch at x (3, rows, cols) [m].
 
-    x: None: as many as equal spheres can.
+    Without x it is the number of equal spheres that touch one.
     """
     if x is None:
         return TOUCHING

@@ -10,6 +10,7 @@ import ast
 import contextlib
 import inspect
 import itertools
+import math
 import re
 import textwrap
 from collections.abc import Callable, Sequence
@@ -332,7 +333,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
 
 
 def other_calls(student: StudentFunction, trial: Trial) -> str:
-    """A sentence on a step that calls the acceleration more or less often than the solution does; "" of others.
+    """A sentence on a step that calls the acceleration more or less often than the solution does; "" for others.
 
     Raises RunError.
     """
@@ -349,18 +350,21 @@ def other_calls(student: StudentFunction, trial: Trial) -> str:
 
 
 def steps_in_sum(student: StudentFunction, trials: Sequence[Trial]) -> str:
-    """A sentence on a function whose error falls with the length of its own steps; "" of others. Raises RunError."""
+    """A sentence on a function that takes time steps of its own, whose error shrinks with them; "" for others.
+
+    Raises RunError.
+    """
     wrong = [trial for trial in trials[:RANDOM] if not trial.is_right]
     if not wrong or student.runner.effort - student.effort > TASK_LIMIT / 2.0:
         return ""
     try:
         edits = student.ask("edits", "finer steps", student.task.arguments, [], wrong[0].sample, time_limit=EDITS_LIMIT)
-        words = student.ask("words", [number for number, _ in edits], [], MANY)
+        words = student.ask("words", [number for number, _ in edits], [], 0)  # a smaller number has the same unit
         before = max(map(error_of, wrong))
         for number, _, _, _, [(old, new, line)] in words:
             finer = EditedFunction(student, number)
             after = max(error_of(trial) for trial in finer.trials([trial.sample for trial in wrong]))
-            if after * LESS <= before:
+            if after * LESS <= before < math.inf:
                 return (
                     f"Its largest error is {100.0 * before:.2g} % with {old} in line {line}, and {100.0 * after:.2g} % "
                     f"with {new} there: an error of finite steps. Use the formula instead."
@@ -371,11 +375,14 @@ def steps_in_sum(student: StudentFunction, trials: Sequence[Trial]) -> str:
 
 
 def error_of(trial: Trial) -> float:
-    """The largest error of a result, relative to the largest number of its part."""
-    return max(
-        float(np.abs(a - b).max(initial=0.0) / (np.abs(b).max(initial=0.0) or 1.0))
-        for a, b in zip(parts(trial.found), parts(trial.right), strict=True)
-    )
+    """The largest error of a result, relative to the largest number of its part; infinite where there is no ratio."""
+    worst = 0.0
+    for a, b in zip(parts(trial.found), parts(trial.right), strict=True):
+        if not (np.isfinite(a).all() and np.isfinite(b).all()):
+            return math.inf
+        error, scale = float(np.abs(a - b).max(initial=0.0)), float(np.abs(b).max(initial=0.0))
+        worst = max(worst, error / scale if scale > 0.0 else math.inf if error > 0.0 else 0.0)
+    return worst
 
 
 def shown_last(student: StudentFunction) -> str:
@@ -394,14 +401,8 @@ def size_of(sample: Sample) -> int:
 
 def nearly(trials: Sequence[Trial]) -> float | None:
     """The largest relative error of a function that is nearly right at all inputs, and right at not all; else None."""
-    worst = 0.0
-    for trial in trials:
-        for a, b in zip(parts(trial.found), parts(trial.right), strict=True):
-            scale = np.abs(b).max(initial=0.0)
-            if not (np.isfinite(a).all() and np.isfinite(b).all() and np.abs(a - b).max(initial=0.0) <= NEARLY * scale):
-                return None
-            worst = max(worst, float(np.abs(a - b).max(initial=0.0) / (scale or 1.0)))
-    return worst if worst > TOLERANCE else None
+    worst = max(map(error_of, trials), default=0.0)
+    return worst if TOLERANCE < worst <= NEARLY else None
 
 
 def compared_parts(trials: Sequence[Trial]) -> list[differences.Difference] | None:

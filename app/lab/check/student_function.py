@@ -85,7 +85,7 @@ class StudentFunction:
 
     @contextlib.contextmanager
     def measured(self, sample: tuple[Any, ...]) -> Iterator[None]:
-        """Measures the time of a series of calls that starts at a sample. Raises RunError after too long a time."""
+        """Measure the time of a series of calls that starts at a sample. Raises RunError after too long a time."""
         self.check_time()
         before = self.runner.effort
         self.sample = sample  # a call that fails is the first of its series

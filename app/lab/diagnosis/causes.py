@@ -442,7 +442,7 @@ def turns(tree: Tree) -> Iterator[Candidate]:
 
 
 def finer_steps(tree: Tree) -> Iterator[Candidate]:
-    """A tenth of a number that is used in a loop, as the length of its steps; not of a power."""
+    """A tenth of a number below 1 in a loop, or of a name that a loop uses: it may be the length of the steps."""
     turned = {part for loop in tree.of(ast.For, ast.While) for line in loop.body for part in ast.walk(line)}
     used = {part.id for part in turned if isinstance(part, ast.Name)}
     for node in tree.of(ast.Constant):

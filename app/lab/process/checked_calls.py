@@ -7,7 +7,7 @@ import contextlib
 import functools
 import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
 
@@ -22,12 +22,8 @@ from app.lab.process.student_modules import StudentModules
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
 SERIES_TIME = 0.1  # [s] of processor time, after which a series of calls is answered before its end
 SLIPS = "slips"
-EDITS = {
-    "traps": traps,
-    "causes": causes,
-    "more slips": more_slips,
-    "finer steps": finer_steps,
-}  # kinds of edits beside `SLIPS`
+# Kinds of edits beside `SLIPS`.
+EDITS = {"traps": traps, "causes": causes, "more slips": more_slips, "finer steps": finer_steps}
 
 
 class CheckedCalls:
@@ -98,7 +94,7 @@ class CheckedCalls:
 
     @contextlib.contextmanager
     def without_effects(self, file: str, function: str) -> Iterator[Callable[..., Any]]:
-        """Gives the result of a function at arguments; a call with a side effect raises Effect."""
+        """A function as of `watched` in a `with` block: it takes the arguments and `twice`, and raises Effect."""
         module, others = self.modules.loaded[file], self.modules.others(file)
         if file not in self.states:
             self.states[file] = state_of([module])
@@ -111,11 +107,7 @@ class CheckedCalls:
         if state_of([module]) != self.states[file]:  # an earlier call has changed something
             target, modules = anew()
         with self.solved(modules, function):
-            yield functools.partial(self.watched_call, target, modules, anew)
-
-    def watched_call(self, target: Any, modules: Any, anew: Any, sample: Sequence[Any], *, twice: bool) -> Any:
-        """As of `watched`, in this folder."""
-        return watched(target, modules, sample, self.modules.folder, anew, twice=twice)
+            yield lambda sample, *, twice: watched(target, modules, sample, self.modules.folder, anew, twice=twice)
 
     def try_edits(
         self, file: str, function: str, kind: str, names: list[str], conditions: list[str], arguments: list[Any]

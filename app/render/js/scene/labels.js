@@ -1,7 +1,7 @@
 // Labels on a separate canvas over the picture: at the full resolution of the screen at every quality, without overlaps.
 //
-// A label that would cover another is raised above it, or lowered at the upper edge of the picture, with a line to its place. Images and clips contain the labels, and
-// so does the page without this script.
+// A label that would cover another is raised above it, or lowered at the upper edge of the picture, with a line to its place.
+// Images and clips contain the labels, and so does the page without this script.
 //
 // Of viser this file uses the meshes of its labels, which stand in one group: those with the uniform uLabelData, a texture
 // of four numbers for each label, its place and whether it is visible; and of the mesh of their backgrounds the attributes

@@ -70,8 +70,8 @@ class StageLimits(NamedTuple):
     finest: int  # parts of a step
 
 
-# Implicit Euler damps errors most, TR-BDF2 less. Nothing takes away what an unsettled midpoint adds to the motion, and
-# its halves are quicker than more corrections: a part of it is split after FEW.
+# Implicit Euler damps errors most, TR-BDF2 less, the midpoint rule none: a part of its step that has not settled after
+# FEW corrections is split. Of stiff curtains that took half the force evaluations of further corrections.
 OF_EULER = StageLimits(1, 1 / 2, 1.0, 1e-3, 24, 25, 16)
 OF_MIDPOINT = StageLimits(2, 1 / 6, 0.0, 0.0, 60, 12, 64)
 OF_TR_BDF2 = StageLimits(2, 1 / 7, 1e-3, 1e-3, 60, 25, 16)

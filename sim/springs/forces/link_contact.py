@@ -19,10 +19,9 @@ from sim.springs.points.link_places import links_near, place_motion, place_on_li
 
 
 @kernel(inline=True)
-def mobility(p, place):
-    """Inverse mass [1/kg] of a place of a link."""
-    s = place.s
-    return (1.0 - s) * (1.0 - s) * p.inverse_masses[place.a] + s * s * p.inverse_masses[place.a + 1]
+def mobility(p, a, s):
+    """Inverse mass [1/kg] of the place of a link from point a that is a part s of it away."""
+    return (1.0 - s) * (1.0 - s) * p.inverse_masses[a] + s * s * p.inverse_masses[a + 1]
 
 
 @kernel(inline=True)
@@ -59,7 +58,7 @@ def damp_links(link, x, v, a, mean, t, s, p, reverse):
     place = place_on_link(x, t, p, link.a)
     if not (place.depth > 0.0 and is_free(p, link)):
         return 0.0
-    nx, ny, nz, n, w = place.nx, place.ny, place.nz, p.cols, mobility(p, place)
+    nx, ny, nz, n, w = place.nx, place.ny, place.nz, p.cols, mobility(p, place.a, place.s)
     u, q, r = place_slip(v, p, place)
     kicked, most, pull = u * nx + q * ny + r * nz, p.contact_k * place.depth, 0.0
     if a.shape[0] > 0:

@@ -13,6 +13,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.forces.contact import clipped_flow
+from sim.springs.forces.link_contact import add_at, mobility
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
 from sim.springs.forces.record import Force
 from sim.springs.points.arrays import StrandArrays, span
@@ -33,14 +34,9 @@ def pair_number(x, p, q):
 
 
 @kernel(inline=True)
-def side_mobility(p, a, s):
-    return (1.0 - s) * (1.0 - s) * p.inverse_masses[a] + s * s * p.inverse_masses[a + 1]
-
-
-@kernel(inline=True)
-def mobility(p, pair):
+def pair_mobility(p, pair):
     """Inverse mass [1/kg] of the distance of two places."""
-    return side_mobility(p, pair.a, pair.s) + side_mobility(p, pair.b, pair.t)
+    return mobility(p, pair.a, pair.s) + mobility(p, pair.b, pair.t)
 
 
 @kernel(inline=True)
@@ -53,18 +49,11 @@ def push_of(v, p, pair, depth, with_damping):
 @kernel(inline=True)
 def add_kick(out, p, pair, size):
     """Change of velocities by an impulse `size` [N s] that pushes two places apart."""
-    n, w = p.cols, p.inverse_masses
-    kick_point(out, n, pair.a, -(1.0 - pair.s) * w[pair.a] * size, pair)
-    kick_point(out, n, pair.a + 1, -pair.s * w[pair.a + 1] * size, pair)
-    kick_point(out, n, pair.b, (1.0 - pair.t) * w[pair.b] * size, pair)
-    kick_point(out, n, pair.b + 1, pair.t * w[pair.b + 1] * size, pair)
-
-
-@kernel(inline=True)
-def kick_point(out, n, j, size, pair):
-    out[j] += size * pair.nx
-    out[n + j] += size * pair.ny
-    out[2 * n + j] += size * pair.nz
+    n, w, nx, ny, nz = p.cols, p.inverse_masses, pair.nx, pair.ny, pair.nz
+    add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a] * size, nx, ny, nz)
+    add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1] * size, nx, ny, nz)
+    add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b] * size, nx, ny, nz)
+    add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1] * size, nx, ny, nz)
 
 
 @kernel(allocates=False)
@@ -87,7 +76,7 @@ def damp_strands_kicked(x, v, a, mean, s, p, reverse):
     n, count = p.cols, pairs_at_hand(x, p)
     for turn in range(count):
         pair = pair_number(x, p, in_turn(turn, count, reverse))
-        depth, w = depth_of(p, pair), mobility(p, pair)
+        depth, w = depth_of(p, pair), pair_mobility(p, pair)
         if depth == 0.0 or w == 0.0:
             continue
         kicked, most = rate_of(v, n, pair), p.contact_k * depth
@@ -169,7 +158,7 @@ def turning(tt, uu, tu, first, second, pair):
 
 
 @kernel(inline=True)
-def add_at(out, n, j, fx, fy, fz):
+def add_force(out, n, j, fx, fy, fz):
     out[j] += fx
     out[n + j] += fy
     out[2 * n + j] += fz
@@ -217,10 +206,12 @@ def tangent(x, u, t, p, part, longest, out):
             first, second = over * d * first, over * d * second
         fx, fy, fz = size * nx + ex, size * ny + ey, size * nz + ez
         s, r = pair.s, pair.t
-        add_at(out, n, pair.a, first * nx - (1.0 - s) * fx, first * ny - (1.0 - s) * fy, first * nz - (1.0 - s) * fz)
-        add_at(out, n, pair.a + 1, -first * nx - s * fx, -first * ny - s * fy, -first * nz - s * fz)
-        add_at(out, n, pair.b, (1.0 - r) * fx - second * nx, (1.0 - r) * fy - second * ny, (1.0 - r) * fz - second * nz)
-        add_at(out, n, pair.b + 1, r * fx + second * nx, r * fy + second * ny, r * fz + second * nz)
+        add_force(out, n, pair.a, first * nx - (1.0 - s) * fx, first * ny - (1.0 - s) * fy, first * nz - (1.0 - s) * fz)
+        add_force(out, n, pair.a + 1, -first * nx - s * fx, -first * ny - s * fy, -first * nz - s * fz)
+        add_force(
+            out, n, pair.b, (1.0 - r) * fx - second * nx, (1.0 - r) * fy - second * ny, (1.0 - r) * fz - second * nz
+        )
+        add_force(out, n, pair.b + 1, r * fx + second * nx, r * fy + second * ny, r * fz + second * nz)
 
 
 FORCE = Force(

@@ -309,7 +309,11 @@ class Net(PointSystem[Run]):
             view = view._replace(held=held, load=load, load_is=np.zeros_like(view.load_is))
         if self.thickness == 0.0:
             return view
-        return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
+        pairs, seen, nearest = np.full_like(view.pairs, -1), np.zeros_like(view.seen), np.zeros_like(view.nearest)
+        view = view._replace(pairs=pairs, seen=seen, nearest=nearest)
+        if not self.is_strand:
+            return view
+        return view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
 
     @functools.cached_property
     def _unit_step_view(self) -> Any:
@@ -369,9 +373,10 @@ class Net(PointSystem[Run]):
             col_spacing=self.families[0].rest if self.is_chain else self.spacing(0, 1),
             pairs=np.full((self.most_pairs + 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
+            nearest=np.zeros(1),
         )
         if self.is_chain:
-            return StrandArrays(*view, *touch)
+            return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12))
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,

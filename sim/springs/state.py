@@ -37,7 +37,9 @@ class State:
     force_evals: int = 0
     steps: int = 0
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
-    unsettled: int = 0  # steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled
+    # Steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled; steps in which
+    # strands that touch were slowed down to keep them apart.
+    unsettled: int = 0
 
     @classmethod
     def at_rest(cls, system: PointSystem) -> "State":

@@ -18,14 +18,16 @@ from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
 from sim.springs.forces.record import Force
 from sim.springs.points.arrays import StrandArrays, span
 from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
-from sim.springs.points.near_pairs import pairs_at_hand, refresh_pairs
+from sim.springs.points.near_pairs import are_neighbours, pairs_at_hand, refresh_pairs
 from sim.springs.points.order import in_turn
 
 
 @kernel(inline=True)
 def depth_of(p, pair):
-    """Depth [m] of a touching pair, 0 if it does not touch or its places coincide."""
-    return max(0.0, p.thickness - pair.distance) if pair.distance > 0.0 else 0.0
+    """Depth [m] of a touching pair; 0 if it does not touch, its places coincide, or its links are neighbours."""
+    if pair.distance == 0.0 or are_neighbours(p, pair.a, pair.b):
+        return 0.0
+    return max(0.0, p.thickness - pair.distance)
 
 
 @kernel(inline=True)

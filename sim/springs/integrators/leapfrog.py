@@ -17,6 +17,7 @@ from sim.springs.analysis.energy import add_power
 from sim.springs.damping import is_odd, make_decay
 from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.kicks.kick import SPLIT, WEAK, kick, make_kick_room
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
@@ -60,8 +61,10 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
             add_power(x, v, now, p, False, 0.5 * h, ledger)
         if s == 0 or not merged:
             kick(x, v, a, now, 0.5 * h, decay, room, p, odd, False, with_account, ledger)
+        remember_places(x, p)
         drift(x, v, h, p, f, spare, middle, with_account, ledger)
         set_pins(x, v, now + h, p)
+        keep_apart(x, v, now + h, p, with_account, ledger)
         accelerate(x, v, now + h, p, False, f, a)
         if merged and s + 1 < steps:
             cross_gap(v, a, 0.5 * h, gap, p, not odd)

@@ -13,6 +13,7 @@ from sim.jit import kernel
 from sim.springs.analysis.amplification import changes_of_matrix, limit_of
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.vector_ops import add_scaled
 
@@ -62,6 +63,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     for s in range(steps):
         now = t + s * h
         set_pins(x, v, now, p)
+        remember_places(x, p)
         for i in range(4):
             add_scaled(x, DRIFTS[i] * h, v)
             now += DRIFTS[i] * h
@@ -71,6 +73,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
                 add_power(x, v, now, p, False, KICKS[i] * h, ledger)
             add_scaled(v, KICKS[i] * h, a)
         add_scaled(x, DRIFTS[4] * h, v)
+        keep_apart(x, v, t + (s + 1) * h, p, with_account, ledger)
     set_pins(x, v, t + steps * h, p)
     return 4 * steps
 

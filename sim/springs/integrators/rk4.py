@@ -10,6 +10,7 @@ from sim.jit import kernel
 from sim.springs.analysis.amplification import changes_of_polynomial, stable_step_of_polynomial
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.vector_ops import set_sum
 
@@ -58,7 +59,9 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         accelerate(xs, vs, now + h, p, True, f, a4)
         if with_account:
             add_power(xs, vs, now + h, p, True, h / 6.0, ledger)
+        remember_places(x, p)
         finish(x, v, a1, a2, a3, a4, h)
+        keep_apart(x, v, now + h, p, with_account, ledger)
     set_pins(x, v, t + steps * h, p)
     return 4 * steps
 

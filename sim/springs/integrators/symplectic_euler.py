@@ -10,6 +10,7 @@ from sim.jit import kernel
 from sim.springs.analysis.amplification import changes_of_matrix
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.vector_ops import add_scaled
 
@@ -48,11 +49,13 @@ def take_euler_steps(by_new_velocity, x, v, ledger, t, h, steps, p, with_account
         accelerate(x, v, now, p, True, f, a)
         if with_account:
             add_power(x, v, now, p, True, h, ledger)
+        remember_places(x, p)
         if by_new_velocity:
             kick_and_drift(x, v, h, a)
         else:
             add_scaled(x, h, v)
             add_scaled(v, h, a)
+        keep_apart(x, v, now + h, p, with_account, ledger)
     set_pins(x, v, t + steps * h, p)
     return steps
 

@@ -72,6 +72,14 @@ class TouchArrays(NamedTuple):
     # or links that were left out as the list was full
     pairs: NDArray[np.int64]
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
+    nearest: NDArray[np.float64]  # (1,) the least distance [m] of any pair then, 0 if it is not known
+
+
+class StepArrays(NamedTuple):
+    """Extra kernel data of chains that touch themselves, see `sim.springs.kicks.apart`."""
+
+    last: NDArray[np.float64]  # (3 cols,) positions at the start of a step
+    between: NDArray[np.float64]  # (12,) those of two links within a step: x, y, z of their four ends
 
 
 class WideArrays(NamedTuple):
@@ -91,7 +99,7 @@ class WideArrays(NamedTuple):
 
 # A chain that touches itself, a net of any families of links, and one of those of CLOTH. A kernel is compiled for each
 # of the four classes of arrays, with no more than nets of that class can need: numba tells them apart by their types.
-StrandArrays = namedtuple("StrandArrays", RopeArrays._fields + TouchArrays._fields)
+StrandArrays = namedtuple("StrandArrays", RopeArrays._fields + TouchArrays._fields + StepArrays._fields)
 GridArrays = namedtuple("GridArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
 ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
 

@@ -1,9 +1,10 @@
 """Pairs of a net's parts that are near to each other: particles or, of a chain, links.
 
 They are found by a spatial hash and kept while nothing has moved by half of what they were looked for beyond the
-thickness (Verlet's list), so that a force evaluation only runs over a short list. Neighbours along the net are no pair:
-those that links hold, and those with less than pi/2 thicknesses of the net between them at rest. That much lies between
-the two sides of the tightest fold, a half circle as wide as the thickness.
+thickness (Verlet's list), so that a force evaluation only runs over a short list. Neighbours along the net do not push
+each other: those that links hold, and those with less than pi/2 thicknesses of the net between them at rest. That much
+lies between the two sides of the tightest fold, a half circle as wide as the thickness. Of a chain the list has them
+all the same, but for links with a common point: they must not pass each other (`sim.springs.kicks.apart`).
 """
 
 import math
@@ -69,13 +70,17 @@ part_count = by_parts(
     particles=kernel(lambda p: p.rows * p.cols, inline=True), links=kernel(lambda p: p.cols - 1, inline=True)
 )  # fmt: skip
 place_of = by_parts(particles=particle_place, links=middle_place)
-# Largest distance [m] between the places of two parts within reach of each other.
+# Largest distance [m] between the places of two parts that are nearer to each other than `reach`.
 place_reach = by_parts(
-    particles=kernel(lambda x, p: reach_of(p), inline=True),
-    links=kernel(lambda x, p: reach_of(p) + math.sqrt(longest(x, np.uint64(p.cols))), inline=True),
+    particles=kernel(lambda x, p, reach: reach, inline=True),
+    links=kernel(lambda x, p, reach: reach + math.sqrt(longest(x, np.uint64(p.cols))), inline=True),
 )
-# True if parts a and b are neighbours along the net.
+# True if parts a and b are neighbours along the net, which do not push each other.
 are_neighbours = by_parts(particles=are_near_on_grid, links=are_near_on_chain)
+# True if they are not listed.
+are_joined = by_parts(
+    particles=are_near_on_grid, links=kernel(lambda p, a, b: abs(b - a) < 2, inline=True)
+)  # fmt: skip
 distance_of = by_parts(
     particles=particle_distance,
     links=kernel(lambda x, p, a, b: pair_at(x, p.cols, a, b).distance, inline=True),
@@ -100,16 +105,16 @@ def bucket(cx, cy, cz, mask):
 
 
 @kernel
-def find_pairs(x, p):
-    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness, and p.seen with the positions.
+def find_pairs_within(x, p, reach):
+    """Fill p.pairs with the pairs nearer than `reach` [m], p.seen with the positions, and p.nearest with the least
+    distance of all pairs, at most the reach.
 
     Where p.pairs is full, the parts after that are left out; its last row keeps the largest number of them.
 
     No pairs if p.stop cancels: callers of a kernel that may stop here check p.stop afterwards.
     """
     n = part_count(p)
-    reach = reach_of(p)
-    inverse = 1.0 / place_reach(x, p)
+    inverse = 1.0 / place_reach(x, p, reach)
     mask = 1
     while mask < n:
         mask *= 2
@@ -127,7 +132,8 @@ def find_pairs(x, p):
         starts[where[j] + 1] -= 1
         order[starts[where[j] + 1]] = j
     most = p.pairs.shape[0] - 1
-    count = 0
+    count, nearest = 0, reach
+    p.nearest[0] = 0.0
     for a in range(n):
         if count == most:  # of a net in one heap the search would take the square of its parts
             p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
@@ -142,8 +148,12 @@ def find_pairs(x, p):
             end = starts[q + 2] if q < mask else n
             for s in range(starts[q + 1], end):
                 b = order[s]
-                if b <= a or are_neighbours(p, a, b) or distance_of(x, p, a, b) >= reach:
+                if b <= a or are_joined(p, a, b):
                     continue
+                distance = distance_of(x, p, a, b)
+                if distance >= reach:
+                    continue
+                nearest = min(nearest, distance)
                 # Two cells of the 27 may share a bucket: take the pair from the cell that b is in.
                 bx, by, bz = cell_of(x, p, b, inverse)
                 other = bx == cx and by == cy and bz == cz
@@ -153,8 +163,15 @@ def find_pairs(x, p):
                 elif other:
                     p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
     p.pairs[most, 0] = count
+    p.nearest[0] = nearest if count < most else 0.0
     for j in range(x.shape[0]):
         p.seen[j] = x[j]
+
+
+@kernel
+def find_pairs(x, p):
+    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness."""
+    find_pairs_within(x, p, reach_of(p))
 
 
 @kernel(noalias=True, inline=True)
@@ -198,6 +215,6 @@ def count_touching(x, p, touching):
     """Add to touching (rows cols,) how many others each particle, or the link from it, touches."""
     for s in range(refresh_pairs(x, p)):
         a, b = p.pairs[s, 0], p.pairs[s, 1]
-        if distance_of(x, p, a, b) < p.thickness:
+        if not are_neighbours(p, a, b) and distance_of(x, p, a, b) < p.thickness:
             touching[a] += 1
             touching[b] += 1

@@ -13,7 +13,7 @@ import numpy as np
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.integrators.embedded.errors import error_of
-from sim.springs.integrators.embedded.stages import is_smooth, make_stages, take_step
+from sim.springs.integrators.embedded.stages import end_step, is_smooth, make_stages, take_step
 from sim.springs.points.acceleration import accelerate, set_pins
 
 SAFETY = 0.9
@@ -74,7 +74,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     a, an = stages.k[:size], stages.k[method.stages * stages.stride :][:size]
     xn, vn = np.empty_like(x), np.empty_like(x)
     x_kept, v_kept, a_kept = np.empty_like(x), np.empty_like(x), np.empty_like(x)
-    spent, ledger, ledger_kept = np.zeros(2), np.zeros(2), np.zeros(2)
+    spent, ledger, ledger_kept = np.zeros(3), np.zeros(2), np.zeros(2)
     t, last = times[0], times[-1]
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, True, stages.f, stages.a)
@@ -120,6 +120,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
             set_to(ledger_kept, ledger)
             t_kept, frame_kept = t, frame
         after = goal if landing else t + step
+        evals += end_step(method, x, after, p, stages, xn, vn, with_account, spent)
         ledger[0] += spent[0]
         ledger[1] += spent[1]
         while frame < len(times) and times[frame] <= after:

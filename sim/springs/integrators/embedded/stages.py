@@ -17,6 +17,7 @@ from sim.springs.analysis.energy import add_power
 from sim.springs.damping import other_acts
 from sim.springs.forces import FORCES, each
 from sim.springs.forces.links import link_forces
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.points.acceleration import accelerate, make_scratch, set_from_differences, set_pins
 from sim.springs.points.arrays import by_net
 
@@ -276,6 +277,17 @@ def step_rope(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
 take_step = by_net(rope=step_rope, grid=step_any, lines=step_any)
 
 
+@kernel(inline=True)
+def end_step(method, x, t, p, stages, xn, vn, with_account, ledger):
+    """End a step from x to xn, vn at time t [s] before a strand passes another; returns the force evaluations."""
+    remember_places(x, p)
+    if not keep_apart(xn, vn, t, p, with_account, ledger):
+        return 0
+    accelerate_all(xn, vn, t, p, stages.f, stages.a)
+    copy(stages.a, np.uint64(0), np.uint64(x.shape[0]), stages.k, np.uint64(method.stages * stages.stride))
+    return 1
+
+
 @kernel(noalias=True, allocates=False)
 def accept(method, x, v, stages, xn, vn):
     """The new state becomes the old one."""
@@ -295,7 +307,9 @@ def take_steps(method, x, v, ledger, t, h, steps, p, with_account):
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, True, stages.f, stages.a)
     copy(stages.a, np.uint64(0), np.uint64(x.shape[0]), stages.k, np.uint64(0))
+    evals = 1 + method.stages * steps
     for s in range(steps):
         take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_account)
+        evals += end_step(method, x, t + (s + 1) * h, p, stages, xn, vn, with_account, ledger)
         accept(method, x, v, stages, xn, vn)
-    return 1 + method.stages * steps
+    return evals

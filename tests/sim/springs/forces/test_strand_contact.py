@@ -260,14 +260,18 @@ def test_the_stable_step_knows_the_contact():
     assert top_modes(heap)[0].omega <= gershgorin(heap, heap.x0)[0]
 
 
-def expected_pairs(net, x, reach):
-    """All pairs of links nearer than `reach`, but for neighbours, by the slow reference."""
-    xs, fold = x[:, 0].T, math.pi / 2 * net.thickness
+def gaps(net, x):
+    """{(i, j): distance} of all links without a common point, by the slow reference."""
+    xs, found = x[:, 0].T, {}
     for i, j in itertools.combinations(range(len(xs) - 1), 2):
-        s, t = naive.nearest_places(xs[i], xs[i + 1], xs[j], xs[j + 1])
-        r = xs[j] + t * (xs[j + 1] - xs[j]) - xs[i] - s * (xs[i + 1] - xs[i])
-        if j - i >= 2 and (j - i - 1) * net.families[0].rest >= fold and np.linalg.norm(r) < reach:
-            yield i, j
+        if j - i >= 2:
+            s, t = naive.nearest_places(xs[i], xs[i + 1], xs[j], xs[j + 1])
+            found[i, j] = np.linalg.norm(xs[j] + t * (xs[j + 1] - xs[j]) - xs[i] - s * (xs[i + 1] - xs[i]))
+    return found
+
+
+def expected_pairs(net, x, reach):
+    return [pair for pair, gap in gaps(net, x).items() if gap < reach]
 
 
 @pytest.mark.parametrize("radius", [0.004, 0.02, 0.12])
@@ -280,6 +284,8 @@ def test_the_list_of_pairs_is_that_of_all_near_links(radius):
         found = sorted(map(tuple, p.pairs[: p.pairs[-1, 0]].tolist()))
         assert found == sorted(expected_pairs(net, net.x0, (1.0 + SKIN) * net.thickness))
         assert p.pairs[-1, 1] == -1
+        least = min(gaps(net, net.x0).values())
+        assert p.nearest[0] == pytest.approx(min(least, (1.0 + SKIN) * net.thickness), rel=1e-9)
 
 
 def test_the_list_lasts_until_a_point_has_moved_by_half_the_skin():

@@ -234,7 +234,7 @@ class Race:
         """Put the roots of all that have not failed to rest at a position [m]."""
         for entrant in self.entrants:
             if not entrant.failure:
-                entrant.place_root(position)
+                entrant.place_pin(0, position)
         for reference in self.references:
             reference.pin(position)
 

@@ -1,13 +1,10 @@
 """One rope of springs."""
 
-import functools
-
 from app.scenes.contract import SceneKind, StabilityMap
 from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
 from app.scenes.rope.quantities import QUANTITIES, RopeInstant
-from app.scenes.rope.scene import PLOTS, SERIES, RopeScene, build, needs, warm_up
+from app.scenes.rope.scene import CURVES, PLOTS, SERIES, RopeScene, build, needs, warm_up, warm_up_on_use
 from app.scenes.springs.divergence import holding_step
-from app.scenes.springs.laws import pieces_on_use
 from app.scenes.springs.rope_parameters import stiffness_parameter
 from app.scenes.springs.speed_advice import step_warnings
 
@@ -24,9 +21,10 @@ SCENE = SceneKind(
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
-    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
+    warm_up_on_use=warm_up_on_use,
     series=SERIES,
     plots=PLOTS,
+    curves=CURVES,
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     stability_map=StabilityMap(stiffness_parameter, build),
     warnings=lambda scene: step_warnings(scene.motion.method, scene.readings().stability),

@@ -3,8 +3,10 @@
 import dataclasses
 from typing import Any
 
-from app.scenes.groups import in_look, in_main, in_plots, in_surroundings
+from app.scenes.groups import in_look, in_main, in_plots, in_rope, in_surroundings
 from app.scenes.springs.rope_parameters import SharedRopeParams, hidden_of_rope
+from sim.parameters import parameter
+from sim.springs import INTEGRATORS
 
 
 @dataclasses.dataclass(frozen=True)
@@ -13,6 +15,19 @@ class RopeParams(SharedRopeParams):
 
     sphere: bool = in_main(False, doc="A sphere; drag its arrows to move it")
     sphere_radius: float = in_surroundings(0.75, 0.05, 3.0, "m", "Radius of the sphere")
+
+    self_contact: bool = in_main(
+        False, doc="Links push each other apart: no strand passes another", title="Touches itself"
+    )
+    start: str = parameter(
+        "level",
+        choices={
+            "level": "Level from the root", "hanging": "Hanging", "over": "Over the sphere", "knot": "In a loose knot"
+        },
+        doc="Shape in which the rope begins", group="Rope", affects="start",
+    )  # fmt: skip
+    end_held: bool = parameter(False, doc="The last point stays where it begins", group="Rope", affects="start")
+    tip_mass: float = in_rope(0.0, 0.0, 1e3, "kg", "Weight at the last point", log_from=1e-2, title="Weight at the tip")
 
     colour: str = in_look(
         "tension",
@@ -26,6 +41,11 @@ class RopeParams(SharedRopeParams):
         title="Dissipated energy",
     )
     plot_tip: bool = in_plots(False, doc="Height of the last point over time", title="Height of the tip")
+    plot_along: bool = in_plots(
+        False,
+        doc="Tension from the root to the tip, and the most that friction on the sphere lets the root hold",
+        title="Tension along the rope",
+    )
 
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -45,6 +65,21 @@ PRESETS: dict[str, dict[str, Any]] = {
         "points": 30, "stiffness": 8000.0, "mass": 0.3, "damping": 1.0, "drag": 0.1, "time_step": 1 / 480,
         "root_swing": 0.2, "swing_period": 1.05,
     },
+    "Capstan": {
+        "units": "material", "points": 50, "length": 2.6, "axial_stiffness": 1500.0, "axial_viscosity": 3.0,
+        "mass_per_length": 0.3, "drag_per_length": 0.3, "contact_stiffness": 1e4, "contact_damping": 5.0,
+        "time_step": 1 / 2400, "sphere": True, "sphere_radius": 0.4, "start": "over", "tip_mass": 5.0,
+        "plot_along": True,
+    },
+    "Knot": {
+        "units": "material", "points": 80, "length": 4.0, "axial_stiffness": 500.0, "axial_viscosity": 2.0,
+        "mass_per_length": 2.0, "drag_per_length": 1.0, "time_step": 1 / 960, "self_contact": True, "start": "knot",
+        "end_held": True,
+    },
+    "Coil": {
+        "units": "material", "points": 80, "length": 2.9, "axial_stiffness": 500.0, "axial_viscosity": 2.0,
+        "mass_per_length": 2.0, "drag_per_length": 1.0, "time_step": 1 / 960, "self_contact": True, "start": "hanging",
+    },
 }  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
@@ -56,6 +91,9 @@ ABOUT = {  # preset -> what it shows and what to try
     "Pendulum": "One point on a stiff spring: compare its period with that of a pendulum of 1 m.",
     "Over the sphere": "The rope falls over a sphere: move the sphere by its arrows.",
     "Shaken at the root": "The root swings to and fro: find the period at which the rope swings most.",
+    "Capstan": "Friction on the sphere carries part of the weight: raise the root until the rope slips.",
+    "Knot": "A loose knot, its ends held: pull one of them away from the other, and the knot tightens.",
+    "Coil": "Lower the root by its arrow: the rope lies down on the floor, strand on strand.",
 }
 
 
@@ -63,5 +101,17 @@ def hidden(params: RopeParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = hidden_of_rope(params, sphere=params.sphere)
     if not params.sphere:
-        names.add("sphere_radius")
+        names |= {"sphere_radius", "plot_along"}
+    if not may_touch_itself(params):
+        names.add("self_contact")
     return names
+
+
+def may_touch_itself(params: RopeParams) -> bool:
+    """False with implicit methods, whose long steps would lead through a strand."""
+    return params.integrator not in INTEGRATORS or not INTEGRATORS[params.integrator].implicit
+
+
+def touches_itself(params: RopeParams) -> bool:
+    """True if links push each other."""
+    return params.self_contact and may_touch_itself(params)

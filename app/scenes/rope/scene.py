@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import SceneCommand, StudentAnswer, Vector
-from app.scenes.charts import PlotAxes
+from app.messages import SceneCommand, StudentAnswer, Vector, vector_of
+from app.scenes.charts import Columns, CurveAxes, PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.parameters import RopeParams
+from app.scenes.rope.parameters import RopeParams, touches_itself
+from app.scenes.rope.start import root_home, start_points
 from app.scenes.springs.divergence import leapfrog_alternative
 from app.scenes.springs.grab import ParticleGrab
-from app.scenes.springs.laws import SPRING, pieces_of_law
+from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.methods import FEW_POINTS, method_that_runs
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.rope_handles import RopeHandles, grab_spring
-from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import Net, rope
+from sim.springs import INTEGRATORS, LAWS, Net, rope
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.stability import critical_stiffness, top_modes
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from app.scenes.rope.student_rope import StudentRope
 
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
+TOUCH = 0.25  # links from the surface of the sphere within which a point turns with it: a link touches between its ends
 FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
 QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
@@ -44,23 +46,61 @@ PLOTS = {
     "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",), least=0.02),
 }
 
+CURVES = {
+    "plot_along": CurveAxes(
+        "Tension along the rope",
+        "N",
+        "Distance from the root [m]",
+        ("tension", "root\u2019s \u00d7 exp(\u03bc\u03b8), most that friction holds"),
+        least=0.1,
+    )
+}
 
-def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE, *, links_touch: bool = True) -> Net:
-    """The net that the parameters describe, with root and sphere centre there [m], see `build_rope`."""
+
+def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE, *, of_tasks: bool = False) -> Net:
+    """The net that the parameters describe, with root and sphere centre there [m], see `build_rope`.
+
+    of_tasks: only what the tasks' functions have: points that touch, one held root, equal masses.
+    """
     ball = (*sphere, params.sphere_radius) if params.sphere else None
-    return build_rope(params, root, ball, links_touch=links_touch)
+    net = build_rope(params, root, ball, links_touch=not of_tasks, self_contact=touches_itself(params) and not of_tasks)
+    if params.start != "level":
+        net = dataclasses.replace(net, x0=state_of(start_points(params, root)))
+    if params.end_held and not of_tasks:
+        net = dataclasses.replace(net, pinned=net.pinned | {(0, params.points - 1)})
+    if params.tip_mass > 0.0 and not of_tasks:
+        ratios = np.ones(net.shape)
+        ratios[0, -1] += params.tip_mass / net.mass
+        net = dataclasses.replace(net, mass_ratios=ratios)
+    return net
 
 
-def warm_up(law: str = SPRING) -> Pieces:
-    """Everything to compile that the scene may call with links of a law."""
-    net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), law=law)
-    gauge = functools.partial(compile_gauge, law)
-    return {GAUGE: gauge, **integrator_pieces(net, rope(4, damping=0.0, drag=0.0, law=law))}
+def warm_up(law: str = SPRING, *, touching: bool = False) -> Pieces:
+    """Everything to compile that the scene may call with links of a law. touching: of ropes that touch themselves."""
+    rope_of = functools.partial(rope, 4, law=law, radius=ROPE_RADIUS, self_contact=touching)
+    net = rope_of(floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
+    methods = integrator_pieces(net, rope_of(damping=0.0, drag=0.0))
+    allowed = {name: piece for name, piece in methods.items() if not (touching and INTEGRATORS[name].implicit)}
+    return {GAUGE: functools.partial(compile_gauge, law, touching), **allowed}
 
 
-def compile_gauge(law: str) -> None:
+def pieces_of_touch(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names of pieces as they are compiled for ropes that touch themselves."""
+    return tuple(f"{name}, touching itself" for name in names)
+
+
+def warm_up_on_use() -> Pieces:
+    """The pieces of ropes with other laws, and of those that touch themselves."""
+    others = dict(pieces_on_use(warm_up))
+    for law in LAWS:
+        own = warm_up(law, touching=True)
+        others |= zip(pieces_of_touch(pieces_of_law(tuple(own), law)), own.values(), strict=True)
+    return others
+
+
+def compile_gauge(law: str, touching: bool) -> None:
     """All but the integrators."""
-    scene = RopeScene(RopeParams(law=law))
+    scene = RopeScene(RopeParams(law=law, self_contact=touching))
     extremes(scene.state.x, scene.state.v)
     scene.frame()
 
@@ -68,7 +108,8 @@ def compile_gauge(law: str) -> None:
 def needs(params: RopeParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = method_that_runs(params.integrator, params.time_step, lambda: build(small(params)))
-    return pieces_of_law((method, GAUGE), params.law)
+    names = pieces_of_law((method, GAUGE), params.law)
+    return pieces_of_touch(names) if touches_itself(params) else names
 
 
 def small(params: RopeParams) -> RopeParams:
@@ -128,17 +169,20 @@ class RopeScene(NetScene[RopeParams]):
     @property
     def faster(self) -> str:
         """Advice on a faster step."""
-        return faster_steps(self.motion.method, self.stability.stability, "points")
+        touches = self.net.thickness > 0.0
+        return faster_steps(self.motion.method, self.stability.stability, "points", touches_itself=touches)
 
     def build(self, params: RopeParams) -> Net:
         """The net that the parameters describe. Beside a student's rope only points touch, as the tasks have it."""
         handles = self.handles
-        return build(params, handles.root.position, handles.sphere.position, links_touch=self.student is None)
+        return build(params, handles.root.position, handles.sphere.position, of_tasks=self.student is not None)
 
     def reset(self) -> None:
-        """The rope at rest, level from its root; root and sphere where a new scene has them."""
-        self.handles.restart()
-        self.place_at_rest(self.build(self.params), rope_bound)
+        """The rope at rest, in the shape in which it begins; root and sphere where a new scene has them."""
+        params, root = self.params, root_home(self.params)
+        is_held = params.end_held and self.student is None
+        self.handles.restart(root, vector_of(start_points(params, root)[-1]) if is_held else None)
+        self.place_at_rest(self.build(params), rope_bound)
         self.max_speed = np.inf  # [m/s] of the fastest point along an axis; how fast it is going to be is not known
         self.assess_stability()
         if self.student is not None:
@@ -174,10 +218,12 @@ class RopeScene(NetScene[RopeParams]):
         return self.handles.net_during(self.net, t, duration, self.step, self.params)
 
     def moved(self, good: State, steps: int, found: Extremes) -> None:
-        """Put a root that has just come to rest in its place, and let the student's rope follow."""
+        """Put an end that has just come to rest in its place, and let the student's rope follow."""
         self.max_speed = found.speed
-        if self.net.pin_paths and self.handles.root.at_rest:
-            self.motion.place_root(self.handles.root.position)
+        for (_, column), _ in self.net.pin_paths:
+            held = self.handles.root if column == 0 else self.handles.end
+            if held is not None and held.at_rest:
+                self.motion.place_pin(column, held.position)
         if self.student is not None:
             x, v = rows_of(self.state.x), rows_of(self.state.v)
             self.student.follow_rope(self.net, good.t, steps, self.params, x, v)
@@ -222,6 +268,28 @@ class RopeScene(NetScene[RopeParams]):
         total = e.kinetic + e.elastic + gained + e.contact
         self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
 
+    def curves(self) -> dict[str, Columns] | None:
+        """The tension along the rope, beside the most that friction on the sphere lets the root hold."""
+        sphere = self.net.sphere
+        if not self.params.plot_along or sphere is None:
+            return None
+        tension = self.tension()
+        middle = self.net.families[0].rest * (np.arange(tension.size) + 0.5)
+        return {"plot_along": (middle, tension, tension[0] * self.capstan_ratios(sphere))}
+
+    def capstan_ratios(self, sphere: tuple[float, float, float, float]) -> NDArray[np.float64]:
+        """(n - 1,) exp(mu theta) of each link, theta [rad] the angle by which the rope has turned on the sphere."""
+        x, y, z, radius = sphere
+        points = rows_of(self.state.x)
+        links = np.diff(points, axis=0)
+        links /= np.maximum(np.linalg.norm(links, axis=1), 1e-12)[:, None]
+        turn = np.arccos(np.clip((links[1:] * links[:-1]).sum(axis=1), -1.0, 1.0))
+        touches = (
+            np.linalg.norm(points[1:-1] - (x, y, z), axis=1)
+            < radius + self.net.radius + TOUCH * self.net.families[0].rest
+        )
+        return np.exp(self.params.friction * np.concatenate([[0.0], np.where(touches, turn, 0.0).cumsum()]))
+
     def readings(self) -> RopeReadings:
         """The worst stability of the last assessments, and the cost, as last assessed."""
         return self.stability
@@ -233,7 +301,7 @@ class RopeScene(NetScene[RopeParams]):
     def frame(self) -> RopeFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params, handles = self.params, self.handles
-        weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
+        weight = float(self.net.masses[0, 1:].sum()) * abs(self.net.gravity[2])
         both = None if self.student is None else self.student.drawn(rows_of(self.state.x))
         x = self.state.x if both is None else state_of(both[0])
         frame = RopeFrame(

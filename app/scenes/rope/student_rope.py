@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from app.lab.process.rope_march import Segment
 from app.lab.student.live_net import ROPE
-from app.scenes.rope.parameters import RopeParams
+from app.scenes.rope.parameters import RopeParams, touches_itself
 from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
@@ -45,6 +45,15 @@ def unlike(params: RopeParams) -> tuple[str, ...]:
 
 def left_out(params: RopeParams) -> tuple[str, ...]:
     """The effects that the program's rope leaves out beside a student's, as the tasks do, a line each."""
+    lines: list[str] = []
     if params.sphere and params.contact_law != "lab":
-        return ("Sphere: only the points of both ropes touch it, as in sphere_force. A link passes a small sphere.",)
-    return ()
+        lines.append(
+            "Sphere: only the points of both ropes touch it, as in sphere_force. A link passes a small sphere."
+        )
+    if touches_itself(params):
+        lines.append("Touches itself: both ropes pass through themselves, as the tasks have no such force.")
+    if params.end_held:
+        lines.append("End held: the last point of both ropes is free, as in the tasks.")
+    if params.tip_mass > 0.0:
+        lines.append("Weight at the tip: all points of both ropes have one mass, as in the tasks.")
+    return tuple(lines)

@@ -18,11 +18,12 @@ from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import RopeParams
+from app.scenes.rope.start import root_home, start_points
 from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
 from app.scenes.springs.drawing.view import SecondNet, Sphere
 from app.scenes.springs.net_motion import rope_lengths
-from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, build_rope
 from app.scenes.springs.speed_advice import held
 
 ROPE_COLOUR = (196, 154, 92)
@@ -32,7 +33,8 @@ TUBE_STEP = 2.0**-15  # [m] to which points of the tube are rounded for the page
 REFERENCE_RADIUS = 1.35 * ROPE_RADIUS  # [m]: seen around the student's rope where both are in one place
 BEAD_COLOUR = (58, 68, 86)
 HANGER_COLOUR = (60, 66, 80)
-HANGER_RADIUS, HANGER_HEIGHT = 0.012, 25.0  # [m] of the rod that the root hangs from: it leaves the picture upwards
+HANGER_RADIUS, HANGER_HEIGHT = 0.012, 25.0  # [m] of the rod that holds an end: it leaves the picture
+STONE = 2000.0  # [kg/m3] of the weight at the tip
 SPHERE_ARROW_LENGTH = 0.45  # [m]
 SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
@@ -41,6 +43,8 @@ START_SIDE = 0.15  # lengths of the rope from the root towards its start, to the
 SHOWN_UNDAMPED_SWING = 2.6  # the same without drag: it swings to both sides as far as it began
 ELEVATION = 0.25  # [rad] of the camera over its target, so that the shadow on the floor is in the picture
 LOWER = 0.03  # heights of the picture from the middle of the rope down to the target
+START_SHARE = 0.65  # of the picture's height that a rope takes which does not begin level
+LEAST_ASPECT = 1.0  # width over height of a picture in which it is whole
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
 RopeSnapshot: TypeAlias = Snapshot[RopeParams, RopeFrame, RopeReadings]
@@ -99,26 +103,48 @@ class TensionRope(RopesDrawing):
 
 
 class Hanger:
-    """The rod from above that holds the root, with a ball at its end.
+    """The rod that holds an end of the rope, from above or from below, with a ball at its end.
 
     It moves by its vertices, as the rope does: a slow page applies positions of nodes at other times.
     """
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: viser.ViserServer, name: str) -> None:
         sphere, faces = ball(6)
-        straight = rod(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, HANGER_HEIGHT]]), HANGER_RADIUS)
-        self.vertices = np.concatenate([MAX_BEAD_RATIO * ROPE_RADIUS * sphere, straight]).astype(np.float32)
+        rods = (
+            rod(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, end]]), HANGER_RADIUS) for end in (HANGER_HEIGHT, -HANGER_HEIGHT)
+        )
+        self.shapes = [
+            np.concatenate([MAX_BEAD_RATIO * ROPE_RADIUS * sphere, each]).astype(np.float32) for each in rods
+        ]
         self.mesh = server.scene.add_mesh_simple(
-            "/hanger", self.vertices, np.concatenate([faces, tube_faces(2) + np.uint32(len(sphere))]),
-            color=HANGER_COLOUR, cast_shadow=False,
+            name, self.shapes[0], np.concatenate([faces, tube_faces(2) + np.uint32(len(sphere))]),
+            color=HANGER_COLOUR, cast_shadow=False, visible=False,
         )  # fmt: skip
-        self.shown = np.zeros(3, np.float32)  # [m]
+        self.shown: tuple[float, ...] = ()
 
-    def show(self, root: NDArray[np.float32]) -> None:
-        """Move to the root (3,) [m]."""
-        if not np.array_equal(root, self.shown):
-            self.shown = root.copy()
-            set_arrays(self.mesh, vertices=self.vertices + self.shown)
+    def show(self, end: NDArray[np.float32] | None, *, from_below: bool) -> None:
+        """Move to an end of the rope (3,) [m]; None: draw nothing."""
+        self.mesh.visible = end is not None
+        if end is not None and (*end.tolist(), from_below) != self.shown:
+            self.shown = (*end.tolist(), from_below)
+            set_arrays(self.mesh, vertices=self.shapes[from_below] + end)
+
+
+class Weight:
+    """The weight at the tip, as a ball of stone. It moves by its vertices, as the rope does."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.unit_ball, faces = ball()
+        self.mesh = server.scene.add_mesh_simple("/weight", self.unit_ball, faces, color=HANGER_COLOUR, visible=False)
+        self.shown: tuple[float, ...] = ()
+
+    def show(self, tip: NDArray[np.float32], mass: float) -> None:
+        """Move to the tip (3,) [m]. mass: [kg], 0 without a weight."""
+        self.mesh.visible = mass > 0.0
+        if mass > 0.0 and (*tip.tolist(), mass) != self.shown:
+            self.shown = (*tip.tolist(), mass)
+            radius = (0.75 * mass / (math.pi * STONE)) ** (1.0 / 3.0)
+            set_arrays(self.mesh, vertices=(radius * self.unit_ball + tip).astype(np.float32))
 
 
 class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
@@ -130,13 +156,16 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         super().__init__(server, post)
         self.sphere = Sphere(server, post, SPHERE_ARROW_LENGTH, SPHERE_ARROW_GAP)
-        self.hanger = Hanger(server)
+        self.hanger, self.end_hanger = Hanger(server, "/hanger"), Hanger(server, "/end-hanger")
+        self.weight = Weight(server)
         self.reference = SecondNet(
             server, "/reference", "yours", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY, receive_shadow=False
         )
 
     def first_view(self, params: RopeParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs and swings."""
+        if params.start != "level":
+            return view_of_start(params)
         net = build_rope(params)
         length, stretch = rope_lengths(net)
         fall = length + min(stretch, length)
@@ -156,7 +185,10 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         self.show_ropes(frame, frame.points[None])
         p = frame.params
-        self.hanger.show(self.points[0])
+        is_free = frame.reference is not None or not p.end_held  # beside a student's rope the end is free
+        self.hanger.show(self.points[0], from_below=p.start == "over")
+        self.end_hanger.show(None if is_free else self.points[-1], from_below=False)
+        self.weight.show(self.points[-1], 0.0 if frame.reference is not None else p.tip_mass)
         self.sphere.show(frame.sphere, frame.sphere[:3] if frame.sphere and p.handles else None)
         if frame.reference is None:
             self.reference.hide()
@@ -190,6 +222,24 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         if step == float("inf"):
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step, g.stability.accurate_step), g.parameter: text}
+
+
+def view_of_start(params: RopeParams) -> tuple[Vector, Vector]:
+    """Position and target [m] of a camera before a rope that hangs, is held or lies over the sphere from its start."""
+    points = start_points(params, root_home(params))
+    if params.start == "over":  # the sphere, and the way of the weight down to the floor
+        top = SPHERE[2] + params.sphere_radius
+        points = np.vstack([points, (*SPHERE[:2], top), (*SPHERE[:2], 0.0)])
+    elif params.floor:
+        points[:, 2] = np.maximum(points[:, 2], 0.0)
+    low, high = points.min(axis=0), points.max(axis=0)
+    if params.end_held:  # as far as a rope that is held at both ends can hang
+        low[2] = min(low[2], high[2] - 0.5 * params.length)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    distance = max(half[2], half[0] / LEAST_ASPECT) / (START_SHARE * math.tan(0.5 * RopeView.FIELD_OF_VIEW))
+    up = distance * math.sin(ELEVATION)
+    x, y, z = (float(each) for each in middle)
+    return (x, y - distance * math.cos(ELEVATION), z + up), (x, y, z)
 
 
 def cost_text(cost: NumericalCost | None) -> Html:

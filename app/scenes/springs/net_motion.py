@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
+import numpy as np
+
 from app.messages import Vector
 from sim.springs import Net
 from sim.springs.analysis.accuracy import Motion
@@ -73,10 +75,10 @@ class NetMotion:
         """True if a state with these extremes is within the bounds; False of a NaN."""
         return found.reach < self.max_reach
 
-    def place_root(self, position: Vector) -> None:
-        """Put the first particle to rest at a position [m]."""
-        self.state.x[:, 0, 0] = position
-        self.state.v[:, 0, 0] = 0.0
+    def place_pin(self, column: int, position: Vector) -> None:
+        """Put a particle of the first row to rest at a position [m]."""
+        self.state.x[:, 0, column] = position
+        self.state.v[:, 0, column] = 0.0
 
     def count_evals(self) -> None:
         """Update evaluations and corrections a step of an implicit method by the steps since the last count."""
@@ -105,5 +107,6 @@ class NetMotion:
 
 def rope_lengths(net: Net) -> tuple[float, float]:
     """Length [m] of a rope at rest, and how much its weight stretches it as it hangs [m]."""
-    links, link = net.shape[1] - 1, net.families[0]
-    return links * link.rest, 0.5 * links * (links + 1) * net.mass * abs(net.gravity[2]) / link.stiffness
+    link = net.families[0]
+    carried = np.cumsum(net.masses[0, :0:-1])  # [kg] by each link, from the last one
+    return (net.shape[1] - 1) * link.rest, float(carried.sum()) * abs(net.gravity[2]) / link.stiffness

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow
+from app.scenes.charts import Columns
 from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import MethodParams
 from app.scenes.plot_rows import PlotRows
@@ -198,9 +199,9 @@ class NetScene(abc.ABC, Generic[P]):
         """The plot rows since the last call."""
         return self.plot_rows.take()
 
-    def curves(self) -> None:
-        """None: this scene has charts over time only."""
-        return
+    def curves(self) -> dict[str, Columns] | None:
+        """The charts that are not over time; None without one."""
+        return None
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

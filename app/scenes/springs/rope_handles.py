@@ -20,10 +20,11 @@ MAX_GRAB_RATE_STEP = 0.5  # the same times the time step, so that it is stable a
 
 def grab_spring(net: Net, step: float, max_force: float) -> SpringOf:
     """The spring of a grab, which damps a free point critically. step: [s]. max_force: [N]."""
+    masses = net.masses[0]
 
     def of_point(point: int) -> GrabSpring:
-        rate = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
-        return GrabSpring(net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+        rate, mass = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step), float(masses[point % masses.size])
+        return GrabSpring(mass * rate**2, 2.0 * mass * rate, max_force)
 
     return of_point
 
@@ -39,12 +40,18 @@ class RopeHandles:
     def __init__(self) -> None:
         self.home = ROOT  # [m] where the root was put; it swings about it where the parameters ask for that
         self.root = CriticallyDampedTracker(ROOT)
+        self.end: CriticallyDampedTracker | None = None  # of a last point that is held
         self.sphere = CriticallyDampedTracker(SPHERE)
         self.grab = ParticleGrab()
 
     def move_root(self, position: Vector) -> None:
         """Move the root, or the centre of its swing."""
         self.home = self.root.target = position
+
+    def move_end(self, position: Vector) -> None:
+        """Move a last point that is held."""
+        if self.end is not None:
+            self.end.target = position
 
     def handle(self, command: SceneCommand, ropes: Sequence[State], spacing: float = 0.0) -> None:
         """Move root or sphere, pull a point, or release it.
@@ -59,10 +66,11 @@ class RopeHandles:
             case GrabTo(index, (x, y, z), client) if 0 <= index < sum(state.x.shape[2] for state in ropes):
                 number, point = divmod(index, ropes[0].x.shape[2])
                 target = x, y - offset_of(number, len(ropes), spacing), z
-                if point > 0:
+                is_end = self.end is not None and point == ropes[0].x.shape[2] - 1
+                if point > 0 and not is_end:
                     self.grab.move(client, index, vector_of(ropes[number].x[:, 0, point]), target)
                 elif self.grab.may_move(client):
-                    self.move_root(target)
+                    self.move_end(target) if is_end else self.move_root(target)
             case Release(client):
                 self.grab.release(client)
             case _:
@@ -71,12 +79,14 @@ class RopeHandles:
     @property
     def at_rest(self) -> bool:
         """True if nothing is moved."""
-        return self.root.at_rest and self.sphere.at_rest and self.grab.grabbed is None
+        ends_rest = self.root.at_rest and (self.end is None or self.end.at_rest)
+        return ends_rest and self.sphere.at_rest and self.grab.grabbed is None
 
-    def restart(self) -> None:
-        """Root and sphere at rest where a new scene has them; nothing grabbed."""
-        self.home = ROOT
-        self.root.place_at(ROOT)
+    def restart(self, root: Vector = ROOT, end: Vector | None = None) -> None:
+        """Root, held end and sphere at rest where a new scene has them; nothing grabbed."""
+        self.home = root
+        self.end = None if end is None else CriticallyDampedTracker(end)
+        self.root.place_at(root)
         self.sphere.place_at(SPHERE)
         self.grab.clear()
 
@@ -90,13 +100,15 @@ class RopeHandles:
         self.root.target = x + swing, y, z
         if self.at_rest and not (net.pin_paths or net.grab or any(net.sphere_velocity)):
             return net
-        path = self.root.advance(t, duration)
+        held = {(0, 0): self.root.advance(t, duration)}
+        if self.end is not None:
+            held[0, net.shape[1] - 1] = self.end.advance(t, duration)
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
         return dataclasses.replace(
             net,
-            pin_paths=() if path is None else (((0, 0), path),),
+            pin_paths=tuple((pin, path) for pin, path in held.items() if path is not None),
             sphere=(*before, net.sphere[3]) if net.sphere else None,
             sphere_velocity=velocity,
             epoch=t,

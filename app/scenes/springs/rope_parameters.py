@@ -103,10 +103,11 @@ def build_rope(
     sphere: tuple[float, float, float, float] | None = None,
     *,
     links_touch: bool = True,
+    self_contact: bool = False,
 ) -> Net:
     """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None.
 
-    links_touch: False: only the points of the rope touch the sphere.
+    links_touch: False: only the points of the rope touch the sphere. self_contact: links touch each other.
     """
     lab = link_and_point(params)
     p = params
@@ -126,4 +127,5 @@ def build_rope(
         law=params.law,
         contact=contact,
         radius=ROPE_RADIUS,
+        self_contact=self_contact,
     )

@@ -128,7 +128,7 @@ def pairs_of_step(x, p):
 
 @kernel
 def hold_back(x, v, p):
-    """Shorten the motion of each point to what the distances of its links allow; without pins, that about the mean."""
+    """Shorten the motion of each point, without pins about the mean, to a bound by the distances of its links."""
     n = np.uint64(p.cols)
     part = np.ones(p.cols)
     mx = my = mz = 0.0

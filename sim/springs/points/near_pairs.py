@@ -3,8 +3,8 @@
 They are found by a spatial hash and kept while nothing has moved by half of what they were looked for beyond the
 thickness (Verlet's list), so that a force evaluation only runs over a short list. Neighbours along the net do not push
 each other: those that links hold, and those with less than pi/2 thicknesses of the net between them at rest. That much
-lies between the two sides of the tightest fold, a half circle as wide as the thickness. Of a chain the list has them
-all the same, but for links with a common point: they must not pass each other (`sim.springs.kicks.apart`).
+lies between the two sides of the tightest fold, a half circle as wide as the thickness. The list of a chain has them
+too, except links with a common point: they must not pass each other (`sim.springs.kicks.apart`).
 """
 
 import math

@@ -75,10 +75,14 @@ def determinant(points):
     """Determinant of the knot of an open polygon (n, 3) whose ends are joined far away: 1 without a knot.
 
     Each crossing is a row with 2 for the arc above and -1 for both arcs below; arcs change where the curve is below.
-    The first point's end and the last one's lead on straight, as their links do, and meet far from the rest.
+    The first point's end and the last one's lead on straight, as their links do, and are joined far from the rest.
     """
     ends = [points[end] + FAR * (points[end] - points[beside]) for end, beside in ((-1, -2), (0, 1))]
     beyond = ends[0] + ends[1]
+    apart = ends[0] - ends[1]
+    if np.linalg.norm(beyond) < np.linalg.norm(apart):  # else the joint would lead back through the knot
+        aside = np.eye(3)[np.abs(apart).argmin()]
+        beyond = 0.5 * np.cross(apart, aside)
     closed = np.vstack([points, ends[0], beyond, ends[1]])
     turn = np.linalg.qr(np.random.default_rng(11).standard_normal((3, 3)))[0]  # a view in which nothing is in line
     crossings = crossings_of(closed @ turn)

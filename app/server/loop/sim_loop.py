@@ -26,6 +26,7 @@ from app.messages import (
     Release,
     Reset,
     RunOn,
+    RunState,
     SceneCommand,
     StepOnce,
     StudentAnswer,
@@ -221,7 +222,7 @@ class SimLoop:
         """Carry out one command. A scene that could not begin only takes other values."""
         run = self.run
         match command:
-            case _ if run.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
+            case _ if run.state is RunState.UNMADE and isinstance(command, SceneCommand | StepOnce | RunOn):
                 pass
             case Play():
                 run.play()

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import viser
 
-from app.messages import Play, RunOn, Take
+from app.messages import Play, RunOn, RunState, Take
 from app.panel.controls.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
@@ -70,7 +70,8 @@ def test_the_panel_shows_at_once_that_the_scene_halts(lab: Viewer) -> None:
     lab.panel.update(lab.loop.latest, [])
     shown = lab.panel.head.status.content
     status = lab.loop.latest.status
-    other = lab.loop.latest._replace(status=status._replace(running=not status.running))
+    state = RunState.PAUSED if status.running else RunState.RUNNING
+    other = lab.loop.latest._replace(status=status._replace(state=state))
     lab.panel.status_at = time.monotonic() + 1.0
     lab.panel.update(other, [])
     assert lab.panel.head.status.content != shown

@@ -353,7 +353,8 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
         return frame()
 
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
-    busy.run.running, busy.run.activity, busy.scene.frame = False, NOTHING, long_frame
+    busy.handle(Pause())
+    busy.run.activity, busy.scene.frame = NOTHING, long_frame
     params = ask(busy, points=5)
     busy.run.snapshots.publish()
     assert (ended, busy.run.snapshots.is_current, busy.run.halted) == ([1], False, "")
@@ -371,7 +372,8 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.run.running, busy.run.activity, busy.run.snapshots.is_current = False, NOTHING, False
+    busy.handle(Pause())
+    busy.run.activity, busy.run.snapshots.is_current = NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)
@@ -384,7 +386,8 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
         busy.give_turn()
         return found
 
-    frame, busy.run.running, busy.run.activity = busy.scene.frame, False, NOTHING
+    busy.handle(Pause())
+    frame, busy.run.activity = busy.scene.frame, NOTHING
     busy.scene.frame = long_frame
     ask(busy, grid=False)
     busy.run.snapshots.publish()

@@ -24,6 +24,7 @@ from app.messages import (
     PointAlong,
     Release,
     Reset,
+    RunState,
     StepOnce,
     StudentAnswer,
     Take,
@@ -131,19 +132,19 @@ class Lane:
         return self.known[key]
 
     def begin(self, **changes: object) -> tuple[Any, ...]:
-        """A state of the loop after half a second, with other values of `running`, `halted`, `replay`, `goal`."""
+        """A state of the loop after half a second, with other values of `state`, `reason`, `replay`, `goal`."""
         self.scene.__init__()
         self.scene.advance(50)
-        given = {"running": True, "halted": "", "replay": None, "goal": None, **changes}
-        return self.scene.state, given["running"], given["halted"], given["replay"], given["goal"], False, ()
+        values = {"state": RunState.RUNNING, "reason": "", "replay": None, "goal": None, **changes}
+        return self.scene.state, values["state"], values["reason"], values["replay"], values["goal"], False, ()
 
     def handled(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
         """The state after a command; the answers to programs are part of it."""
         loop, scene = self.loop, self.scene
-        scene.state, loop.run.running, loop.run.halted, shown, goal, starts, answers = state
-        loop.run.replay = None if shown is None else Replay(MOMENTS, "it diverged")
+        scene.state, loop.run.state, loop.run.reason, moment, goal, starts, answers = state
+        loop.run.replay = None if moment is None else Replay(MOMENTS, "it diverged")
         if loop.run.replay is not None:
-            loop.run.replay.number, loop.run.replay.shown_for = shown
+            loop.run.replay.number, loop.run.replay.shown_for = moment
         waiting: Future[float] = Future()
         loop.run.goal = None if goal is None else Goal(goal[0], waiting, goal[1])
         loop.run.counts["starts"] = starts
@@ -157,7 +158,7 @@ class Lane:
         if waiting.done():
             answers = (*answers, str(waiting.exception()))
         return (
-            scene.state, loop.run.running, loop.run.halted,
+            scene.state, loop.run.state, loop.run.halted,
             None if loop.run.replay is None else (loop.run.replay.number, loop.run.replay.shown_for),
             None if loop.run.goal is None else (loop.run.goal.until, loop.run.goal.was_running),
             loop.run.counts["starts"] > 0, answers,
@@ -177,10 +178,10 @@ COMMANDS: tuple[Command, ...] = (
 )  # fmt: skip
 STATES: dict[str, dict[str, object]] = {
     "running": {},
-    "paused": {"running": False},
-    "halted": {"running": False, "halted": "it diverged"},
-    "replayed": {"replay": (0, 0.0)},
-    "replayed, paused": {"running": False, "replay": (1, 0.0)},
+    "paused": {"state": RunState.PAUSED},
+    "halted": {"state": RunState.HALTED, "reason": "it diverged"},
+    "replayed": {"state": RunState.REPLAYING, "replay": (0, 0.0)},
+    "replayed, paused": {"state": RunState.REPLAY_PAUSED, "replay": (1, 0.0)},
     "a program waits": {"goal": (9.0, False)},
 }
 

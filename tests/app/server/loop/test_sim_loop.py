@@ -403,7 +403,8 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
     assert sleep.is_alive()
     stop.set()
     sleep.join(10.0)
-    loop.run.running, serial = False, loop.latest.serial
+    loop.handle(Pause())
+    serial = loop.latest.serial
     loop.tick(0.0)
     assert loop.latest.serial == serial + 1
 

@@ -10,6 +10,8 @@ from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.parameters import Effect
+
 Vector = tuple[float, float, float]
 
 MAX_DISTANCE = 100.0  # [m] from the origin: nothing from a browser is placed farther out
@@ -112,23 +114,35 @@ class Checkpoint(NamedTuple):
     run: int = 0  # number of its run
 
 
-class Take(NamedTuple):
-    """Take a whole record of parameters; of several the latest counts.
+class Change(NamedTuple):
+    """Take other parameters. The run continues, unless they affect the start: then another one begins."""
 
-    Parameters of another act than that of the present run begin another run. Others continue the present one, depending
-    on the effect of the change.
-    """
-
-    params: BaseParams  # the scene's record
-    start: bool = False  # restart and run, whatever has changed, as a preset does
-    state: Checkpoint | None = None  # resume from here and run; of a scene with these parameters
+    params: BaseParams  # the scene's whole record
+    effect: Effect  # of the change from the parameters posted before; "start" also if the act begins a run in any case
     act: int = 0  # number of the act that begins the run of these parameters; 0: that of the present run
-    back: bool = False  # go back to the last run of that act as it was left; `start`: if it was not kept
 
-    @property
-    def changes_only(self) -> bool:
-        """True if the present run continues, unless the parameters are of another act or affect the start."""
-        return not self.start and self.state is None and not self.back
+
+class Begin(NamedTuple):
+    """Restart the scene with these parameters and run, whatever has changed, as a preset does."""
+
+    params: BaseParams
+    act: int = 0
+
+
+class Resume(NamedTuple):
+    """Resume from a checkpoint of a scene with these parameters, and run."""
+
+    params: BaseParams
+    state: Checkpoint
+    act: int = 0
+
+
+class GoBack(NamedTuple):
+    """Go back to the last run of an act as it was left, with these parameters; restart it if it is not kept."""
+
+    params: BaseParams
+    act: int
+    runs: bool = False  # a restarted one runs, as after a preset; otherwise it plays if the present one does
 
 
 class Place(NamedTuple):
@@ -191,10 +205,12 @@ class Advance(NamedTuple):
     answer: Future[float]
 
 
+RecordCommand = Change | Begin | Resume | GoBack  # with a whole record of parameters
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # for a scene; the rest is for the loop
-Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | GoOn | Ask | Advance | SceneCommand
+Transport = Play | Pause | TogglePlay | StepOnce | RunOn | Halt
+Command = Transport | Reset | RecordCommand | GoOn | Ask | Advance | SceneCommand
 
 
 class RunIdentity(NamedTuple):

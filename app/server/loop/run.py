@@ -9,7 +9,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.messages import BaseParams, Checkpoint, Pause, Play, PlotRow, RunIdentity, RunState, Take
+from app.messages import (
+    BaseParams,
+    Begin,
+    Change,
+    Checkpoint,
+    GoBack,
+    Pause,
+    Play,
+    PlotRow,
+    RecordCommand,
+    Resume,
+    RunIdentity,
+    RunState,
+)
 from app.panel.recording.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
@@ -20,7 +33,7 @@ from app.server.loop.shared_clock import Seat
 from app.server.loop.snapshots import Snapshots, kept_state
 from app.server.loop.states import Event, state_after
 from sim.interruption import ABANDON, STOP, InterruptionError
-from sim.parameters import effect_of_change
+from sim.parameters import Effect, effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
@@ -395,39 +408,51 @@ class RunSequence:
     def __init__(self, run: SceneRun) -> None:
         self.run, self.left = run, LeftRuns()
 
-    def obey(self, command: Take) -> None:
+    def obey(self, command: RecordCommand) -> None:
         """Take a record of parameters: with another run, or according to the effect of the change."""
-        params, start, state, act, back = command
         run = self.run
-        is_other = act not in (0, run.identity.act)
-        if not command.changes_only:
+        is_other = command.act not in (0, run.identity.act)
+        if not isinstance(command, Change):
             run.awaited = None
         if is_other:
             self.leave()
-        if back and is_other:
-            self.go_back(command)
-        elif state is not None:
-            self.resume(params, state, act)
-        elif start and not back:
-            self.begin_with(params, act)
-        elif is_other:
-            self.change_start(params, act)
-        else:  # even if the run that an undo leaves has never begun
-            self.take(params)
+        match command:
+            case GoBack() if is_other:
+                self.go_back(command)
+            case GoBack(params):  # the run that an undo leaves has never begun
+                self.take_back(params)
+            case Resume(params, state, act):
+                self.resume(params, state, act)
+            case Begin(params, act):
+                self.begin_with(params, act)
+            case Change(params, effect, act):
+                self.take(params, effect, act)
 
-    def take(self, params: BaseParams) -> None:
+    def take_back(self, params: BaseParams) -> None:
+        """Take the parameters to which an undo goes back, in the run to which it goes back."""
+        self.take(params, effect_of_change(self.run.scene.params, params))
+
+    def take(self, params: BaseParams, effect: Effect | None, act: int = 0) -> None:
         """Take parameters according to the effect of their change; those that affect the start begin another run."""
         run, scene = self.run, self.run.scene
-        effect = effect_of_change(scene.params, params)
         if effect in (None, "look"):
             scene.params = params
         elif effect == "start" or run.state is RunState.UNMADE:
-            self.change_start(params)
+            self.change_start(params, act)
+        elif run.unfinished is not None:  # the scene has not begun: its beginning comes first
+            beginning = run.unfinished
+            run.unfinished = lambda: self.begin_and_change(beginning, params)
         else:
             self.end_replay()
             run.fixed_step.cost_unknown = True
             run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
             scene.params = params  # even if the scene failed, so that a reset uses them
+
+    def begin_and_change(self, beginning: Callable[[], None], params: BaseParams) -> None:
+        """Begin the scene, then change its forces."""
+        beginning()
+        self.run.scene.change_forces(params)
+        self.run.scene.params = params
 
     def end_replay(self) -> None:
         """End showing the last moments of a run that diverged."""
@@ -494,17 +519,17 @@ class RunSequence:
         run.identity = run.identity._replace(placed=placed)
         run.snapshots.keep_rates()
 
-    def keep_dropped(self, take: Take) -> None:
+    def keep_dropped(self, command: RecordCommand) -> None:
         """Keep a run that was to resume from a moment for an undo, when newer parameters replace it."""
-        if take.state is not None:
-            self.left.add(LeftRun(take.act, take.params, take.state, None, True))
+        if isinstance(command, Resume):
+            self.left.add(LeftRun(command.act, command.params, command.state, None, True))
 
-    def go_back(self, command: Take) -> None:
+    def go_back(self, command: GoBack) -> None:
         """Go back to the run of an act as it was left; restart it if it is not kept."""
-        params, start, _, act, _ = command
+        params, act, runs = command
         run, left = self.run, self.left.pop(act)
         if left is None:
-            (self.begin_with if start else self.change_start)(params, act)
+            (self.begin_with if runs else self.change_start)(params, act)
             run.snapshots.show_restarted()
             return
         if left.rows is None:
@@ -513,7 +538,7 @@ class RunSequence:
             self.begin_with(left.params, act, left)
         if run.seat is not None and not run.running:
             run.seat.tell_others(Pause())
-        self.take(params)  # they may have changed just before the run was left
+        self.take_back(params)  # they may have changed just before the run was left
 
     def return_to(self, left: LeftRun) -> None:
         """Restart the scene, then restore a run that was left, with its plots."""

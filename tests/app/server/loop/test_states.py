@@ -13,18 +13,21 @@ import pytest
 
 from app.messages import (
     Advance,
+    Begin,
+    Change,
     Checkpoint,
     Command,
+    GoBack,
     Halt,
     LastFrame,
     Pause,
     Play,
     Release,
     Reset,
+    Resume,
     RunOn,
     RunState,
     StepOnce,
-    Take,
     TogglePlay,
 )
 from app.panel.head import status_line
@@ -192,7 +195,7 @@ def cancel(lab: Lab) -> None:
 def begin_paused(lab: Lab) -> None:
     """Go back to a run that was left paused."""
     lab.loop.runs.left.add(LeftRun(PAUSED_ACT, lab.scene.params, Checkpoint(0.25, {}), (), False))
-    lab.loop.handle(Take(lab.scene.params, act=PAUSED_ACT, back=True))
+    lab.loop.handle(GoBack(lab.scene.params, PAUSED_ACT))
 
 
 def replay(lab: Lab) -> None:
@@ -204,7 +207,7 @@ def replay(lab: Lab) -> None:
 
 
 def resume(lab: Lab) -> None:
-    lab.loop.handle(Take(lab.scene.params, state=Checkpoint(0.25, {})))
+    lab.loop.handle(Resume(lab.scene.params, Checkpoint(0.25, {})))
 
 
 CAUSES: dict[Event, Callable[[Lab], None]] = {
@@ -214,7 +217,7 @@ CAUSES: dict[Event, Callable[[Lab], None]] = {
     Event.HALT: fail_outside,
     Event.REPLAY: replay,
     Event.RESTART: lambda lab: lab.loop.handle(Reset()),
-    Event.BEGIN: lambda lab: lab.loop.handle(Take(lab.scene.params, start=True)),
+    Event.BEGIN: lambda lab: lab.loop.handle(Begin(lab.scene.params)),
     Event.BEGIN_PAUSED: begin_paused,
     Event.RESUME: resume,
     Event.CANCEL: cancel,
@@ -329,15 +332,27 @@ def test_a_run_that_has_not_begun_is_not_kept_for_an_undo() -> None:
     assert [run.act for run in lab.loop.runs.left.runs] == [1]
 
 
+def test_a_run_whose_return_is_cancelled_takes_other_forces_after_it_has_begun() -> None:
+    lab = new_lab()
+    left, wanted = lab.scene.params, Params(stiffness=5.0)
+    lab.loop.handle(Begin(left, 2))
+    lab.scene.cancels = 1
+    lab.loop.commands.put(GoBack(wanted, 1))
+    lab.tick(wall=0.0)
+    assert (lab.loop.run.state, lab.scene.changes) == (RunState.MAKING, 0)
+    lab.tick(wall=0.0)
+    assert (lab.loop.run.state, lab.scene.changes, lab.scene.params) == (RunState.RUNNING, 1, wanted)
+
+
 def commands(rng: random.Random) -> Iterator[Command]:
     """A few random commands."""
     for _ in range(rng.choice([0, 0, 1, 1, 2, 4])):
         yield rng.choice([
             Play(), Pause(), TogglePlay(), StepOnce(), Halt("no picture"), Reset(), Release(), Advance(0.1, Future()),
-            RunOn(lambda snapshot: snapshot.status.time > 1.0), Take(Params(points=rng.randint(2, 4))),
-            Take(Params(stiffness=rng.choice([1.0, 2.0]))), Take(Params(), start=True, act=rng.randint(1, 3)),
-            Take(Params(), state=Checkpoint(0.25, {}), act=rng.randint(1, 3)),
-            Take(Params(), act=rng.randint(1, 3), back=True),
+            RunOn(lambda snapshot: snapshot.status.time > 1.0), Change(Params(points=rng.randint(2, 4)), "start"),
+            Change(Params(stiffness=rng.choice([1.0, 2.0])), "forces"), Begin(Params(), rng.randint(1, 3)),
+            Resume(Params(), Checkpoint(0.25, {}), rng.randint(1, 3)),
+            GoBack(Params(), rng.randint(1, 3), rng.random() < 0.5),
         ])  # fmt: skip
 
 

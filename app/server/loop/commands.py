@@ -87,7 +87,7 @@ def repeats(earlier: Command, later: Command) -> bool:
 
 def merge_changes(commands: list[Command], change: Change) -> Change:
     """Drop the last changes that one can do together with `change`; returns it, with the greatest of their effects."""
-    effects = [change.effect]
+    effects: list[Effect] = [change.effect]
     most, number = 0, 0  # of changes: to drop, and seen
     for before in reversed(commands):
         if not isinstance(before, Change):

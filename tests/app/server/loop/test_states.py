@@ -7,6 +7,7 @@ import random
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -342,6 +343,18 @@ def test_a_run_whose_return_is_cancelled_takes_other_forces_after_it_has_begun()
     assert (lab.loop.run.state, lab.scene.changes) == (RunState.MAKING, 0)
     lab.tick(wall=0.0)
     assert (lab.loop.run.state, lab.scene.changes, lab.scene.params) == (RunState.RUNNING, 1, wanted)
+
+
+def test_the_table_of_the_documentation_is_that_of_the_program() -> None:
+    text = (Path(__file__).parents[4] / "docs" / "architecture.md").read_text("utf-8")
+    rows = [[cell.strip(" *") for cell in line.split("|")[1:-1]] for line in text.split("\n") if line.startswith("|")]
+    start = next(number for number, row in enumerate(rows) if row[0] == "state")
+    assert rows[start] == ["state", *(event.value for event in Event)]
+    table = {row[0]: row[1:] for row in rows[start + 2 : start + 2 + len(RunState)]}
+    assert table == {
+        state.value: [states.TABLE[state][event].value if event in states.TABLE[state] else "-" for event in Event]
+        for state in RunState
+    }
 
 
 def commands(rng: random.Random) -> Iterator[Command]:

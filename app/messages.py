@@ -4,10 +4,13 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 from dataclasses import Field
+from enum import Enum
 from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sim.parameters import Effect
 
 Vector = tuple[float, float, float]
 
@@ -111,23 +114,35 @@ class Checkpoint(NamedTuple):
     run: int = 0  # number of its run
 
 
-class Take(NamedTuple):
-    """Take a whole record of parameters; of several the latest counts.
+class Change(NamedTuple):
+    """Take other parameters. The run continues, unless they affect the start: then another one begins."""
 
-    Parameters of another act than that of the present run begin another run. Others continue the present one, depending
-    on the effect of the change.
-    """
-
-    params: BaseParams  # the scene's record
-    start: bool = False  # restart and run, whatever has changed, as a preset does
-    state: Checkpoint | None = None  # resume from here and run; of a scene with these parameters
+    params: BaseParams  # the scene's whole record
+    effect: Effect  # of the change from the parameters posted before; "start" also if the act begins a run in any case
     act: int = 0  # number of the act that begins the run of these parameters; 0: that of the present run
-    back: bool = False  # go back to the last run of that act as it was left; `start`: if it was not kept
 
-    @property
-    def changes_only(self) -> bool:
-        """True if the present run continues, unless the parameters are of another act or affect the start."""
-        return not self.start and self.state is None and not self.back
+
+class Begin(NamedTuple):
+    """Restart the scene with these parameters and run, whatever has changed, as a preset does."""
+
+    params: BaseParams
+    act: int = 0
+
+
+class Resume(NamedTuple):
+    """Resume from a checkpoint of a scene with these parameters, and run."""
+
+    params: BaseParams
+    state: Checkpoint
+    act: int = 0
+
+
+class GoBack(NamedTuple):
+    """Go back to the last run of an act as it was left, with these parameters; restart it if it is not kept."""
+
+    params: BaseParams
+    act: int
+    runs: bool = False  # a restarted one runs, as after a preset; otherwise it plays if the present one does
 
 
 class Place(NamedTuple):
@@ -190,10 +205,12 @@ class Advance(NamedTuple):
     answer: Future[float]
 
 
+RecordCommand = Change | Begin | Resume | GoBack  # with a whole record of parameters
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # for a scene; the rest is for the loop
-Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | GoOn | Ask | Advance | SceneCommand
+Transport = Play | Pause | TogglePlay | StepOnce | RunOn | Halt
+Command = Transport | Reset | RecordCommand | GoOn | Ask | Advance | SceneCommand
 
 
 class RunIdentity(NamedTuple):
@@ -236,25 +253,67 @@ PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SE
 RunRow = tuple[RunIdentity, PlotRow]  # a plot row with its run
 
 
+class RunState(Enum):
+    """State of a run; `app/server/loop/states.py` has the table of its changes."""
+
+    MAKING = "making"  # the scene begins, or did and was cancelled, so that the next tick repeats it; then it runs
+    MAKING_PAUSED = "making, paused"
+    UNMADE = "unmade"  # the scene could not begin, and waits for other values
+    RUNNING = "running"
+    PAUSED = "paused"
+    REPLAYING = "replaying"  # the last moments of a run that has just diverged
+    REPLAY_PAUSED = "replay paused"
+    HALTED = "halted"  # by an error; the last good state remains
+
+    @property
+    def plays(self) -> bool:
+        """True if it goes on by itself, so that the button says "Pause"."""
+        return self in (RunState.MAKING, RunState.RUNNING, RunState.REPLAYING)
+
+    @property
+    def is_making(self) -> bool:
+        """True until the scene has begun."""
+        return self in (RunState.MAKING, RunState.MAKING_PAUSED)
+
+    @property
+    def replays(self) -> bool:
+        """True while the last moments of a divergence are shown."""
+        return self in (RunState.REPLAYING, RunState.REPLAY_PAUSED)
+
+    @property
+    def has_stopped(self) -> bool:
+        """True if an error has stopped the run, for a reason that the page shows."""
+        return self in (RunState.UNMADE, RunState.HALTED)
+
+    @property
+    def has_failed(self) -> bool:
+        """True after an error, also while its last moments are still shown."""
+        return self.has_stopped or self.replays
+
+
 class Status(NamedTuple):
     """State of the simulation loop."""
 
-    running: bool
+    state: RunState
     time: float  # [s] simulated
     steps: int
     speed: float  # target real-time factor
     actual_speed: float | None  # real-time factor over the last second of this run; None while it is not known
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
-    halted: str  # reason why the run stopped by itself, or ""
+    halted: str  # reason why the run has stopped by itself; "" in any other state
     run: RunIdentity = RunIdentity()
     # During the replay of a divergence, and at its end: corners [m] of the box that its moments fill.
     replayed: tuple[Vector, Vector] | None = None
-    unmade: bool = False  # the scene could not begin with its parameters
     pace: float = 1.0  # factor on `speed` requested by the scene: below 1 is slow motion
     restarted: bool = False  # a recent undo had to restart the run, which was not kept
     outdated: bool = False  # the run stopped with other parameters than the present ones
     faster: str = ""  # advice that makes a capped run faster, or ""
+
+    @property
+    def running(self) -> bool:
+        """True if the run goes on by itself."""
+        return self.state.plays
 
 
 class ChartLine(NamedTuple):

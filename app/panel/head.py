@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import viser
 
-from app.messages import Command, Pause, Play, Status, StepOnce
+from app.messages import Command, Pause, Play, RunState, Status, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
@@ -15,6 +15,16 @@ from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] of a step, above which the status line reports it
 COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce()}
+STATE_WORDS = {  # of the status line, with their colours
+    RunState.MAKING: ("Running", GOOD_COLOUR),
+    RunState.MAKING_PAUSED: ("Paused", WARNING_COLOUR),
+    RunState.UNMADE: ("Stopped", ERROR_COLOUR),
+    RunState.RUNNING: ("Running", GOOD_COLOUR),
+    RunState.PAUSED: ("Paused", WARNING_COLOUR),
+    RunState.REPLAYING: ("Slow motion", WARNING_COLOUR),
+    RunState.REPLAY_PAUSED: ("Slow motion", WARNING_COLOUR),
+    RunState.HALTED: ("Stopped", ERROR_COLOUR),
+}
 
 
 class Head:
@@ -110,7 +120,7 @@ class Head:
             self.running = running
             self.buttons.options = button_names(running=running)
         status = snapshot.status
-        told, self.told = self.told, (running, status.halted, status.outdated, status.run.placed, visitors)
+        told, self.told = self.told, (status.state, status.halted, status.outdated, status.run.placed, visitors)
         return self.told != told
 
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
@@ -118,7 +128,7 @@ class Head:
         kind, status = self.settings.kind, snapshot.status
         is_stable = kind.is_stable is not None and kind.is_stable(snapshot)
         self.status.content = str(status_line(snapshot, busy, visitors, is_stable=is_stable))
-        needs_remedy = status.halted and not status.unmade and not (status.outdated and is_stable)
+        needs_remedy = status.state is RunState.HALTED and not (status.outdated and is_stable)
         self.remedy.show(kind.remedy(snapshot) if needs_remedy and kind.remedy is not None else None)
         can_reset = status.outdated and (is_stable or kind.is_stable is None)
         if self.again.visible != can_reset:
@@ -167,12 +177,9 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1, *, 
     is_stable: a run with the present parameters would be stable.
     """
     s = snapshot.status
-    state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
-    if (s.replayed is not None and not s.halted) or (s.running and s.pace < 1.0):
-        state = coloured("Slow motion", WARNING_COLOUR)
-    if s.halted:
-        state = coloured("Stopped", ERROR_COLOUR)
-    state = fill('<span class="springtide-state">{}</span>', state)
+    is_slow = s.running and s.pace < 1.0
+    word = coloured(*(("Slow motion", WARNING_COLOUR) if is_slow else STATE_WORDS[s.state]))
+    state = fill('<span class="springtide-state">{}</span>', word)
     pace = Html()
     if s.running and s.actual_speed is not None:
         pace = fill("×{:.2f}", s.actual_speed)
@@ -189,12 +196,12 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1, *, 
         state,
         s.time,
         fill('<span class="springtide-speed"> · {}</span>', pace) if pace else "",
-        fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
+        fill("<br>The run diverged. These are its last steps.") if s.state.replays else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",
         fill("<br>That run is no longer in memory, so this one starts at t = 0.") if s.restarted else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
         fill('<div class="springtide-stopped" role="alert">{}</div>', stop_words(s, is_stable=is_stable))
-        if s.halted
+        if s.state.has_stopped
         else "",
     )

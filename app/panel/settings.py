@@ -9,14 +9,37 @@ import viser
 
 from app.formats.formatting import with_unit
 from app.lab.course import task
-from app.messages import BaseParams, Checkpoint, Command, GoOn, GrabTo, Place, Release, Reset, Take
+from app.messages import (
+    BaseParams,
+    Begin,
+    Change,
+    Checkpoint,
+    Command,
+    GoBack,
+    GoOn,
+    GrabTo,
+    Place,
+    RecordCommand,
+    Release,
+    Reset,
+    Resume,
+)
 from app.panel.history import EarlierSettings, History, SceneRequest
 from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
-from sim.parameters import Parameter, Value, changed_names, clamp_value, effect_of_change, in_words, parameters_of
+from sim.parameters import (
+    Effect,
+    Parameter,
+    Value,
+    changed_names,
+    clamp_value,
+    effect_of_change,
+    in_words,
+    parameters_of,
+)
 
 NO_PARAMS: Mapping[str, BaseParams] = MappingProxyType({})
 CAMERA = "camera"  # a thing that a view places, not a person
@@ -124,11 +147,11 @@ class SceneSettings:
             return
         params = dataclasses.replace(self.params, **good)
         is_number = len(changed) == 1 and not known[changed[0]].choices and known[changed[0]].kind is not bool
-        begins = restarts or effect_of_change(self.params, params) == "start"
+        effect: Effect = "start" if restarts else self.effect_of(params)
         words = in_words(changed[0]) if len(changed) == 1 else "new values" if changed else "restart"
         number = changed[0] if is_number and not restarts else ""
-        act = self.history.note(self.now(words), number=number, begins=begins)
-        self.take(Take(params, act=act), self.loaded)
+        act = self.history.note(self.now(words), number=number, begins=effect == "start")
+        self.take(Change(params, effect, act), self.loaded)
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them if one is open."""
@@ -148,7 +171,7 @@ class SceneSettings:
         before = self.now(f"preset {preset}", client_cameras(self.server))
         act = self.history.note(before, begins=True, runs=True)
         self.placing = Placing(act, first_view=True, cameras=cameras)
-        self.take(Take(params, start=True, act=act), preset)
+        self.take(Begin(params, act), preset)
 
     def set_up(self, setup: task.TaskSetup) -> None:
         """Show the set-up of a task. Raises ValueError for an unknown scene, preset or parameter."""
@@ -170,12 +193,12 @@ class SceneSettings:
     def resume(self, params: BaseParams, state: Checkpoint) -> None:
         """Resume the scene from a checkpoint, with its parameters."""
         act = self.history.note(self.now("going back in time"), begins=True, runs=True)
-        self.take(Take(params, state=state, act=act), self.loaded)
+        self.take(Resume(params, state, act), self.loaded)
 
     def begin_with(self, params: BaseParams) -> None:
         """Restart the scene with other parameters, leaving the cameras in place."""
         act = self.history.note(self.now("new values"), begins=True, runs=True)
-        self.take(Take(params, start=True, act=act), self.loaded)
+        self.take(Begin(params, act), self.loaded)
 
     def reset(self) -> None:
         """Restart the scene."""
@@ -233,11 +256,14 @@ class SceneSettings:
         """Show settings from the history. act: of the present run."""
         self.pulling.clear()  # a point that is still held begins another drag
         known = settings.preset in self.presets  # a set-up of the user may have been removed
-        back = settings.act != act
         if settings.cameras:
             self.placing = Placing(settings.act, first_view=False, cameras=settings.cameras)
-        take = Take(settings.params, start=back and settings.runs, act=settings.act, back=back)
-        self.take(take, settings.preset if known else next(iter(self.kind.presets)))
+        command = (
+            Change(settings.params, self.effect_of(settings.params), act)
+            if settings.act == act
+            else GoBack(settings.params, settings.act, settings.runs)
+        )
+        self.take(command, settings.preset if known else next(iter(self.kind.presets)))
 
     def read_own(self, chosen: str = "") -> None:
         """Read the user's own set-ups again. chosen: the one with the present parameters, if any."""
@@ -283,7 +309,11 @@ class SceneSettings:
         value = value_in_words(parameters[name], getattr(settings.params, name))
         return f"{settings.words}, {way} {value}"
 
-    def take(self, command: Take, preset: str) -> None:
+    def effect_of(self, params: BaseParams) -> Effect:
+        """Effect of a change from the present parameters; that of none is as small as that of a look."""
+        return effect_of_change(self.params, params) or "look"
+
+    def take(self, command: RecordCommand, preset: str) -> None:
         """Take parameters, and pass them to the simulation. preset: their source."""
         self.params, self.loaded = command.params, preset
         self.post(command)
@@ -317,5 +347,5 @@ def with_fields_of(old: BaseParams | None, new: BaseParams) -> BaseParams:
     """`new` with the files of `old` and the other fields that are not parameters."""
     if old is None:
         return new
-    kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
-    return dataclasses.replace(new, **kept)
+    others = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
+    return dataclasses.replace(new, **others)

@@ -26,7 +26,7 @@ class CameraPlacing:
     def update(self, snapshot: AnySnapshot, placing: Placing | None) -> None:
         """Place the cameras for a picture. placing: requested by the settings, once its run is shown."""
         status = snapshot.status
-        if status.replayed is not None and not status.halted:
+        if status.replayed is not None and status.state.replays:
             self.fit(snapshot.params, status.replayed)
         if status.run.number != self.run:
             self.run = status.run.number

@@ -57,7 +57,7 @@ class SnapshotValues(Mapping[str, LiveValue]):
             self.found[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
         status = snapshot.status
         self.found["time"] = LiveNumber(status.time, "s", "Time")
-        self.found["diverged"] = bool(status.halted) or status.replayed is not None
+        self.found["diverged"] = status.state.has_stopped or status.state.replays
 
     def __getitem__(self, name: str) -> LiveValue:
         """The value of this name. Raises KeyError if the scene does not have it now."""

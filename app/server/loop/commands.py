@@ -4,7 +4,6 @@ Parameters wait until the kernels that they need are compiled, since compiling h
 overtakes what it may depend on.
 """
 
-import itertools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, NamedTuple
 
@@ -12,19 +11,23 @@ from app.messages import (
     Advance,
     Ask,
     BaseParams,
+    Begin,
+    Change,
     Command,
+    GoBack,
     GoOn,
     GrabTo,
     Halt,
     Pause,
     Place,
     Play,
+    RecordCommand,
     Release,
     Reset,
+    Resume,
     SceneCommand,
     StepOnce,
     StudentAnswer,
-    Take,
     TogglePlay,
 )
 from app.scenes.ahead.compiling import Compiling, Job
@@ -41,35 +44,28 @@ class Record(NamedTuple):
     act: int
 
 
-def merged(commands: Iterable[Command], record: Record) -> list[Command]:
-    """The shortest commands with the effect of all in order. record: that of the scene before.
+def merged(commands: Iterable[Command]) -> list[Command]:
+    """The shortest commands with the effect of all in order.
 
     Only neighbours are merged, so that no command overtakes another that it may depend on.
     """
-    kept: list[Command] = []
+    short: list[Command] = []
     for command in commands:
-        match kept[-1] if kept else None, command:
-            case (_, Take(start=True, back=False)):
-                while kept and is_begun_over(kept[-1]):
-                    kept.pop()  # the new run leaves nothing of it
-            case (Take(), Take()) if command.changes_only:
-                drop_changes(kept, command, record)
+        match short[-1] if short else None, command:
+            case (_, Begin()):
+                while short and isinstance(short[-1], Change | Begin | Reset):
+                    short.pop()  # the new run leaves nothing of it, neither here nor in what an undo restores
+            case (Change(), Change()):
+                command = merge_changes(short, command)
             case (StepOnce(before), StepOnce(steps)):
-                kept.pop()
+                short.pop()
                 command = StepOnce(before + steps)
             case (last, _) if last is not None and repeats(last, command):
-                kept.pop()
+                short.pop()
             case _:
                 pass
-        kept.append(command)
-    return kept
-
-
-def is_begun_over(command: Command) -> bool:
-    """True if a restart leaves nothing of a command, neither in the new run nor in the one that an undo restores."""
-    if isinstance(command, Take):
-        return command.state is None and not command.back
-    return isinstance(command, Reset)
+        short.append(command)
+    return short
 
 
 def repeats(earlier: Command, later: Command) -> bool:
@@ -89,76 +85,84 @@ def repeats(earlier: Command, later: Command) -> bool:
             return False
 
 
-def drop_changes(kept: list[Command], change: Take, record: Record) -> None:
-    """Drop the last changes of parameters, as long as `change` alone has the effect of all in order."""
-    last = len(kept)
-    while last and isinstance(before := kept[last - 1], Take) and before.changes_only:
-        last -= 1
-    chain = len(kept) - last
-    records = records_of(record, [*kept, change])[-chain - 2 :]  # the first is the one before the chain
-    for dropped in range(chain, 0, -1):
-        if is_one_change(records[-dropped - 2 :]):
-            del kept[-dropped:]
-            return
+def merge_changes(commands: list[Command], change: Change) -> Change:
+    """Drop the last changes that one can do together with `change`; returns it, with the greatest of their effects."""
+    effects: list[Effect] = [change.effect]
+    most, number = 0, 0  # of changes: to drop, and seen
+    for before in reversed(commands):
+        if not isinstance(before, Change):
+            break
+        effects.insert(0, before.effect)
+        number += 1
+        most = number if is_one_change(effects) else most
+    if most == 0:
+        return change
+    del commands[-most:]
+    return change._replace(effect=max(effects[number - most :], key=EFFECTS.index))
 
 
-def records_of(record: Record, commands: Iterable[Command]) -> list[Record]:
-    """A record, followed by the record after each command."""
-    records = [record]
-    for command in commands:
-        if isinstance(command, Take | Reset):
-            last = records[-1]
-            params = command.params if isinstance(command, Take) else last.params
-            records.append(Record(params, command.act or last.act))
-        elif isinstance(command, GoOn):  # no other run
-            records[-1] = records[-1]._replace(act=command.act)
-    return records
-
-
-def effect_between(before: Record, after: Record) -> Effect | None:
-    """Effect of going from one record to another: another act begins another run."""
-    return "start" if before.act != after.act else effect_of_change(before.params, after.params)
-
-
-def is_one_change(records: Sequence[Record]) -> bool:
-    """True if going from the first record to the last at once has the same effect as through the others.
+def is_one_change(effects: Sequence[Effect]) -> bool:
+    """True if one change can replace several with these effects.
 
     Changed forces act from the next step on, so that only the last of several count: a net whose number of points
     changes twice is interpolated once. A scene that begins and then takes other forces may differ from one that begins
     with these.
     """
-    effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
     begins = [number for number, effect in enumerate(effects) if effect == "start"]
-    if begins and "forces" in effects[begins[-1] :]:
-        return False
-    return rank(effect_between(records[0], records[-1])) >= max(map(rank, effects))
+    return not begins or "forces" not in effects[begins[-1] :]
 
 
-def rank(effect: Effect | None) -> int:
-    """Effects in order: a greater one includes the smaller ones."""
-    return -1 if effect is None else EFFECTS.index(effect)
+def record_after(record: Record, command: Command) -> Record:
+    """The record after a command."""
+    match command:
+        case Change(params, _, act) | Begin(params, act) | Resume(params, _, act) | GoBack(params, act):
+            return Record(params, act or record.act)
+        case Reset(act):
+            return Record(record.params, act or record.act)
+        case GoOn(act):
+            return Record(record.params, act)
+        case _:
+            return record
 
 
-def begins_anew(command: Command) -> bool:
-    """True if the scene starts from its beginning after this command, whatever its state before."""
-    return isinstance(command, Reset) or (isinstance(command, Take) and command.start)
+def effect_after(record: Record, params: BaseParams, act: int) -> Effect | None:
+    """Effect of going from a record to the parameters of an act: another act has another run."""
+    return "start" if act not in (0, record.act) else effect_of_change(record.params, params)
+
+
+def effect_of(command: Command, record: Record) -> Effect | None:
+    """Effect of a command after a record; None if it changes no parameters and begins nothing.
+
+    A change carries its own. Going back may lead to the present run, if the run that it leaves has never begun.
+    """
+    match command:
+        case Change(_, effect):
+            return effect
+        case Begin() | Resume() | Reset():
+            return "start"
+        case GoBack(params, act):
+            return effect_after(record, params, act)
+        case _:
+            return None
+
+
+def effect_of_all(record: Record, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
+    """The last parameters of the commands, and the greatest effect on the way to them from `record`."""
+    greatest: Effect | None = None
+    for command in commands:
+        effect = effect_of(command, record)
+        if effect is not None and (greatest is None or EFFECTS.index(effect) > EFFECTS.index(greatest)):
+            greatest = effect
+        record = record_after(record, command)
+    return record.params, greatest
 
 
 def is_urgent(command: Command) -> bool:
     """True if a command should not wait for a long solve.
 
-    Drags, resuming and commands of a waiting program may wait; a change of parameters depends on its effect.
+    Drags and commands of a waiting program may wait; a change of parameters depends on its effect.
     """
-    if isinstance(command, Take):
-        return not command.changes_only
-    return not isinstance(command, SceneCommand | Play | GoOn | Ask | Advance)
-
-
-def effect_of_takes(record: Record, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
-    """The last parameters of the commands, and the greatest effect on the way to them from `record`."""
-    records = records_of(record, commands)
-    effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
-    return records[-1].params, max(effects, key=rank, default=None)
+    return not isinstance(command, Change | SceneCommand | Play | GoOn | Ask | Advance)
 
 
 class Activity(NamedTuple):
@@ -185,7 +189,7 @@ class CompileGate:
         compiling: Compiling,
         kind: AnyKind,
         record: Record,
-        drop: Callable[[Take], None] = lambda take: None,
+        drop: Callable[[RecordCommand], None] = lambda command: None,
     ) -> None:
         """record: the running one. drop: called with each dropped one, which an undo may restore."""
         self.compiling, self.kind, self.drop = compiling, kind, drop
@@ -214,7 +218,7 @@ class CompileGate:
         """
         admitted = self.passed()
         for command in commands:
-            if isinstance(command, Take):
+            if isinstance(command, RecordCommand):
                 admitted += self.passed(command)
             elif self.held and isinstance(command, Advance | Reset | GoOn):
                 self.held.append(command)
@@ -223,7 +227,7 @@ class CompileGate:
                 self.note([command])
         return admitted
 
-    def passed(self, newer: Take | None = None) -> list[Command]:
+    def passed(self, newer: RecordCommand | None = None) -> list[Command]:
         """The waiting commands that can be handled now, up to the first that cannot. newer: comes after them."""
         passed = self.pop_ready()
         if newer is not None:
@@ -235,7 +239,7 @@ class CompileGate:
         """Take out those that can be handled now."""
         count = 0
         for command in self.held:
-            if isinstance(command, Take) and not self.is_ready(command.params):
+            if isinstance(command, RecordCommand) and not self.is_ready(command.params):
                 break
             count += 1
         ready, self.held = self.held[:count], self.held[count:]
@@ -245,24 +249,37 @@ class CompileGate:
             self.notice = ""
         return ready
 
-    def drop_held(self, newer: Take) -> list[Command]:
+    def drop_held(self, newer: RecordCommand) -> list[Command]:
         """The waiting commands without those that newer parameters make obsolete.
 
         An undo goes back past all of them. Other parameters that can run replace the waiting ones, and begin the run of
         their act or return to it, unless they follow a moment, which has its own parameters.
         """
-        waiting = [command for command in self.held if isinstance(command, Take)]
-        if newer.changes_only:
-            if not self.is_ready(newer.params) or any(take.state is not None for take in waiting):
-                return merged([*self.held, newer], self.record)
-            back = any(take.back and take.act == newer.act for take in waiting)
-            newer = newer._replace(start=any(take.start and take.back == back for take in waiting), back=back)
-        elif not newer.back and not self.is_ready(newer.params):
-            return merged([*self.held, newer], self.record)
-        for take in waiting:
-            self.drop(take)
+        waiting = [command for command in self.held if isinstance(command, RecordCommand)]
+        if not isinstance(newer, GoBack) and not self.is_ready(newer.params):
+            return merged([*self.held, newer])
+        if isinstance(newer, Change):
+            if any(isinstance(command, Resume) for command in waiting):
+                return merged([*self.held, newer])
+            newer = self.in_place_of(waiting, newer)
+        for command in waiting:
+            self.drop(command)
         return [newer, *(command for command in self.held if isinstance(command, Advance))]
+
+    def in_place_of(self, waiting: Sequence[RecordCommand], change: Change) -> RecordCommand:
+        """The command that replaces a change and the waiting ones before it.
+
+        Those never reach the loop, so that its effect is that of going there from the loop's record.
+        """
+        params, _, act = change
+        backs = [command for command in waiting if isinstance(command, GoBack)]
+        if any(command.act == act for command in backs):
+            return GoBack(params, act, any(command.runs for command in backs))
+        if any(isinstance(command, Begin) for command in waiting):
+            return Begin(params, act)
+        return change._replace(effect=effect_after(self.record, params, act) or "look")
 
     def note(self, commands: Iterable[Command]) -> None:
         """Note the record after the handled commands."""
-        self.record = records_of(self.record, commands)[-1]
+        for command in commands:
+            self.record = record_after(self.record, command)

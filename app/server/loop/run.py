@@ -9,7 +9,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.messages import BaseParams, Checkpoint, Pause, Play, PlotRow, RunIdentity, Take
+from app.messages import (
+    BaseParams,
+    Begin,
+    Change,
+    Checkpoint,
+    GoBack,
+    Pause,
+    Play,
+    PlotRow,
+    RecordCommand,
+    Resume,
+    RunIdentity,
+    RunState,
+)
 from app.panel.recording.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
@@ -18,8 +31,9 @@ from app.server.loop.commands import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Ac
 from app.server.loop.replay import Replay
 from app.server.loop.shared_clock import Seat
 from app.server.loop.snapshots import Snapshots, kept_state
+from app.server.loop.states import Event, state_after
 from sim.interruption import ABANDON, STOP, InterruptionError
-from sim.parameters import effect_of_change
+from sim.parameters import Effect, effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
@@ -35,13 +49,13 @@ class Goal(NamedTuple):
     answer: Future[float]
     was_running: bool
 
-    def end(self, found: float | Exception) -> None:
+    def end(self, result: float | Exception) -> None:
         """Answer with the time [s], or raise there."""
         if self.answer.set_running_or_notify_cancel():
-            if isinstance(found, Exception):
-                self.answer.set_exception(found)
+            if isinstance(result, Exception):
+                self.answer.set_exception(result)
             else:
-                self.answer.set_result(found)
+                self.answer.set_result(result)
 
 
 class AwaitedEvent:
@@ -70,23 +84,36 @@ class SceneRun:
         self.numbers = itertools.count(2)  # of the runs to come
         self.request = np.zeros(4, np.int64)  # for the running solve: see sim/interruption.py
         self.activity = NOTHING
-        self.unfinished: Callable[[], None] | None = None  # a reset that was cancelled
-        self.unmade = False  # the scene could not begin, and waits for other values
-        self.running = not paused
-        self.halted = ""
+        self.state = RunState.PAUSED if paused else RunState.RUNNING
+        self.unfinished: Callable[[], None] | None = None  # the beginning to repeat while the scene is being made
+        self.reason = ""  # of the last halt
         self.halted_with = scene.params  # parameters of the run that halted
         self.fixed_step = FixedStep()
-        self.replay: Replay | None = None  # of a run that has just diverged
+        self.replay: Replay | None = None  # of a run that has diverged, until it plays on
         self.seat: Seat | None = None  # at a clock shared with other loops
         self.goal: Goal | None = None  # awaited by a program
         self.awaited: AwaitedEvent | None = None
         self.counts: collections.Counter[str] = collections.Counter()
         self.snapshots = Snapshots(self)
 
+    def become(self, event: Event) -> None:
+        """Change the state by an event. Raises IllegalEventError if the table has none."""
+        self.state = state_after(self.state, event)
+
+    @property
+    def running(self) -> bool:
+        """True if the run goes on by itself."""
+        return self.state.plays
+
+    @property
+    def halted(self) -> str:
+        """Reason why the run has stopped, or ""."""
+        return self.reason if self.state.has_stopped else ""
+
     @property
     def stopped_by(self) -> str:
         """Reason why the run can go no further, or ""; known before its last frames have been shown again."""
-        return self.halted if self.replay is None else self.replay.reason
+        return self.replay.reason if self.replay is not None and self.state.replays else self.halted
 
     def cancel(self, how: int = 1) -> None:
         """Cancel the running solve. how: ABANDON even if it should be completed. Any thread may call it."""
@@ -94,13 +121,14 @@ class SceneRun:
 
     def play(self) -> None:
         """Play; after the last moments of a divergence from the last good state."""
-        self.running, self.halted = True, ""
         if self.replay is not None and self.replay.ended:
             self.replay = None
+        self.become(Event.PLAY if self.replay is None else Event.REPLAY)
 
     def pause(self) -> None:
         """Pause, and await no event."""
-        self.running, self.awaited = False, None
+        self.awaited = None
+        self.become(Event.PAUSE)
 
     def run_on(self, reached: Callable[[AnySnapshot], bool]) -> None:
         """Run up to an event."""
@@ -108,27 +136,27 @@ class SceneRun:
         self.awaited = AwaitedEvent(reached, self.snapshots.latest)
 
     def halt(self, reason: str) -> None:
-        """Pause, with all on the same clock, and keep the reason for the panel."""
+        """Halt, pause all on the same clock, and keep the reason for the panel."""
         if self.seat is not None:
             self.seat.tell_others(Pause())
-        self.running = False
-        self.halted, self.halted_with = reason, self.scene.params
+        self.reason, self.halted_with, self.unfinished = reason, self.scene.params, None
+        self.become(Event.HALT)
 
     def go_on(self, wall: float) -> bool:
         """Take steps, or replay the last moments of a divergence, within a tick; True if there is news to show.
 
         wall: [s] since the last tick.
         """
-        if self.unfinished is not None:
-            return False  # a scene that could not be made takes no steps
-        if self.running and self.audience() and self.replay is not None:
+        if self.state.is_making:
+            return False  # a scene that has not begun takes no steps
+        if self.state is RunState.REPLAYING and self.audience() and self.replay is not None:
             return self.play_replay(self.replay, wall)
-        if self.goal is not None and self.running and not self.audience():
+        if self.goal is not None and self.state is RunState.RUNNING and not self.audience():
             self.hurry(self.goal.until)
             return True
         if self.seat is not None and self.audience():
             return self.follow(self.seat, wall)
-        if self.running and self.audience():
+        if self.state is RunState.RUNNING and self.audience():
             return self.keep_time(wall)
         self.counts["idle ticks"] += 1
         return False
@@ -151,7 +179,7 @@ class SceneRun:
         """Report the time of the run to the clock of several loops."""
         if self.seat is not None:
             seat, scene = self.seat, self.scene
-            seat.note(scene.time, scene.step, scene.pace, running=self.running, halted=bool(self.stopped_by))
+            seat.note(scene.time, scene.step, scene.pace, running=self.running, halted=self.state.has_failed)
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps up to the time of the clock, as many as fit the frame; True if there were any.
@@ -160,7 +188,7 @@ class SceneRun:
         """
         if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
-        due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
+        due = 0 if self.state.has_failed else seat.due(self.scene.time, self.scene.step)
         n = self.fixed_step.most(due, self.clock.frame_interval(self.scene.frame_interval))
         self.fixed_step.capped = n < due or (seat.is_first and seat.clock.late)
         return self.take_steps(n)
@@ -169,7 +197,7 @@ class SceneRun:
         """Run for this long, and then answer the waiting program with the time."""
         self.give_up("another program waits for the lab")
         self.goal = Goal(self.scene.time + seconds, answer, self.running)
-        self.running = not self.stopped_by
+        self.become(Event.ADVANCE)
 
     def settle(self) -> None:
         """Answer the waiting program if the run has reached the time or cannot continue."""
@@ -177,7 +205,7 @@ class SceneRun:
         if goal is None or not (reason or steps_to(self.scene, goal.until) == 0 or goal.answer.cancelled()):
             return
         if not reason and not goal.was_running:
-            self.running = False
+            self.become(Event.PAUSE)
             self.snapshots.publish()  # the page says that it stands still
         self.goal = None
         goal.end(DivergenceError(reason) if reason else self.scene.time)
@@ -185,7 +213,7 @@ class SceneRun:
     def pause_at_event(self) -> None:
         """Pause if the awaited event has begun since the last frame."""
         if self.awaited is not None and self.running and self.awaited.begins(self.snapshots.latest):
-            self.awaited, self.running = None, False
+            self.pause()
             self.snapshots.publish()
 
     def hurry(self, until: float) -> None:
@@ -195,7 +223,7 @@ class SceneRun:
         """
         most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
         start = self.clock.effort()
-        while self.running and self.replay is None and self.clock.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
+        while self.state is RunState.RUNNING and self.clock.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
             left = steps_to(self.scene, until)
             if left == 0:
                 return
@@ -209,7 +237,7 @@ class SceneRun:
         Another method or more points may make a step a thousand times as expensive as the last one was.
         """
         part, spent = 1, 0.0
-        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
+        while n > 0 and part > 0 and self.state is RunState.RUNNING and not self.request[STOP]:
             part = min(part, n)
             self.fixed_step.cost = 0.0
             spent += self.advance(part)
@@ -240,18 +268,21 @@ class SceneRun:
         except InterruptionError:
             self.counts["solves ended early"] += 1
             if begins or activity == OTHER_FORCES or self.request[STOP] == ABANDON:
-                self.unfinished = action if begins else self.scene.reset
-            if self.unfinished is not None and not begins:
-                self.identify()
+                self.unfinished, self.replay = action if begins else self.scene.reset, None
+                self.become(Event.CANCEL)
+                if not begins:
+                    self.identify()
         except DivergenceError as error:
-            self.unmade = begins
-            if error.moments and self.running:
+            if error.moments and self.running and not begins:
                 self.replay = Replay(error.moments, str(error))
+                self.become(Event.REPLAY)
             else:
                 self.halt(str(error))
         except Exception as error:
-            self.unmade = begins
             self.halt(failure_words(error, begins=begins))
+        else:
+            if begins:
+                self.become(Event.MADE)
         finally:
             self.activity = NOTHING
 
@@ -265,7 +296,7 @@ class SceneRun:
 
     def step_by_hand(self, count: int) -> None:
         """Pause and take single steps: with all on the same clock, or as many as a frame allows."""
-        self.running = False
+        self.become(Event.PAUSE)
         if self.seat is None or self.replay is not None:
             self.take_single_steps(count)
         elif self.seat.is_first:
@@ -286,7 +317,7 @@ class SceneRun:
                 continue
             self.replay = None
             spent += self.advance(1)
-            if self.halted != halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
+            if self.state.is_making or self.halted != halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
                 self.fixed_step.dropped += count - done - 1
                 return
 
@@ -299,7 +330,7 @@ class SceneRun:
     def clear(self) -> None:
         """Discard the state of the run, before the scene continues from its start or from another moment."""
         self.give_up(BEGUN)
-        self.halted, self.replay, self.unfinished, self.unmade = "", None, None, False
+        self.replay = self.unfinished = None
         self.fixed_step.debt = 0.0
 
     def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
@@ -307,9 +338,9 @@ class SceneRun:
         act = act or self.identity.act
         self.identity = RunIdentity(next(self.numbers), act, before, since, act)
 
-    def reset(self, act: int = 0, action: Callable[[], None] | None = None) -> None:
-        """Restart the scene, or begin it by another action, for an act; a halted run plays again."""
-        self.running |= bool(self.halted)
+    def reset(self, act: int = 0, action: Callable[[], None] | None = None, event: Event = Event.RESTART) -> None:
+        """Restart the scene, or begin it by another action, for an act. event: how it begins."""
+        self.become(event)
         self.clear()
         self.identify(act)
         if self.seat is not None:
@@ -318,7 +349,7 @@ class SceneRun:
 
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
-        self.unfinished, self.unmade = None, False
+        self.unfinished = None
         self.guarded(reset, BEGINNING)
 
 
@@ -364,10 +395,10 @@ class LeftRuns:
         """Take out the last run of that act; None if it is not kept."""
         for place in reversed(range(len(self.runs))):
             if self.runs[place].act == act:
-                found = self.runs[place]
+                run = self.runs[place]
                 del self.runs[place]
-                self.memory.remove(found.arrays)
-                return found
+                self.memory.remove(run.arrays)
+                return run
         return None
 
 
@@ -377,39 +408,51 @@ class RunSequence:
     def __init__(self, run: SceneRun) -> None:
         self.run, self.left = run, LeftRuns()
 
-    def obey(self, command: Take) -> None:
+    def obey(self, command: RecordCommand) -> None:
         """Take a record of parameters: with another run, or according to the effect of the change."""
-        params, start, state, act, back = command
         run = self.run
-        is_other = act not in (0, run.identity.act)
-        if not command.changes_only:
+        is_other = command.act not in (0, run.identity.act)
+        if not isinstance(command, Change):
             run.awaited = None
         if is_other:
             self.leave()
-        if back and is_other:
-            self.go_back(command)
-        elif state is not None:
-            self.resume(params, state, act)
-        elif start and not back:
-            self.begin_with(params, act)
-        elif is_other:
-            self.change_start(params, act)
-        else:  # even if the run that an undo leaves has never begun
-            self.take(params)
+        match command:
+            case GoBack() if is_other:
+                self.go_back(command)
+            case GoBack(params):  # the run that an undo leaves has never begun
+                self.take_back(params)
+            case Resume(params, state, act):
+                self.resume(params, state, act)
+            case Begin(params, act):
+                self.begin_with(params, act)
+            case Change(params, effect, act):
+                self.take(params, effect, act)
 
-    def take(self, params: BaseParams) -> None:
+    def take_back(self, params: BaseParams) -> None:
+        """Take the parameters to which an undo goes back, in the run to which it goes back."""
+        self.take(params, effect_of_change(self.run.scene.params, params))
+
+    def take(self, params: BaseParams, effect: Effect | None, act: int = 0) -> None:
         """Take parameters according to the effect of their change; those that affect the start begin another run."""
         run, scene = self.run, self.run.scene
-        effect = effect_of_change(scene.params, params)
         if effect in (None, "look"):
             scene.params = params
-        elif effect == "start" or run.unmade:
-            self.change_start(params)
+        elif effect == "start" or run.state is RunState.UNMADE:
+            self.change_start(params, act)
+        elif run.unfinished is not None:  # the scene has not begun: its beginning comes first
+            beginning = run.unfinished
+            run.unfinished = lambda: self.begin_and_change(beginning, params)
         else:
             self.end_replay()
             run.fixed_step.cost_unknown = True
             run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
             scene.params = params  # even if the scene failed, so that a reset uses them
+
+    def begin_and_change(self, beginning: Callable[[], None], params: BaseParams) -> None:
+        """Begin the scene, then change its forces."""
+        beginning()
+        self.run.scene.change_forces(params)
+        self.run.scene.params = params
 
     def end_replay(self) -> None:
         """End showing the last moments of a run that diverged."""
@@ -435,18 +478,21 @@ class RunSequence:
         self.run.reset(act)
 
     def begin_with(self, params: BaseParams, act: int, left: LeftRun | None = None) -> None:
-        """Restart the scene with these parameters, playing; or restore a run that was left."""
+        """Restart the scene with these parameters, playing; or restore a run that was left, playing if it did."""
         run = self.run
         run.scene.params, run.fixed_step.cost_unknown = params, True
         if run.seat is not None:
             run.seat.begin_others()
             run.seat.tell_others(Play())
-        run.reset(act, None if left is None else lambda: self.return_to(left))
-        run.running = not run.halted
+        if left is None:
+            run.reset(act, event=Event.BEGIN)
+        else:
+            run.reset(act, lambda: self.return_to(left), Event.BEGIN if left.running else Event.BEGIN_PAUSED)
 
     def resume(self, params: BaseParams, state: Checkpoint, act: int) -> None:
         """Resume from a checkpoint, with its parameters, playing."""
         run = self.run
+        run.become(Event.RESUME)
         run.clear()
         run.scene.params, run.fixed_step.cost_unknown = params, True
         run.guarded(lambda: run.scene.resume(state.value))
@@ -454,12 +500,11 @@ class RunSequence:
         if run.seat is not None:
             run.seat.go_on_from(run.scene.time)
             run.seat.tell_others(Play())
-        run.running = not run.halted
 
     def leave(self) -> None:
-        """Keep the present run for an undo before another one begins, unless it has halted."""
+        """Keep the present run for an undo before another one begins, unless it cannot go on."""
         run = self.run
-        if not (run.stopped_by or run.unmade or run.unfinished):
+        if not (run.state.has_failed or run.state.is_making):
             rows = tuple(run.snapshots.kept_rows)
             self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
 
@@ -474,27 +519,26 @@ class RunSequence:
         run.identity = run.identity._replace(placed=placed)
         run.snapshots.keep_rates()
 
-    def keep_dropped(self, take: Take) -> None:
+    def keep_dropped(self, command: RecordCommand) -> None:
         """Keep a run that was to resume from a moment for an undo, when newer parameters replace it."""
-        if take.state is not None:
-            self.left.add(LeftRun(take.act, take.params, take.state, None, True))
+        if isinstance(command, Resume):
+            self.left.add(LeftRun(command.act, command.params, command.state, None, True))
 
-    def go_back(self, command: Take) -> None:
+    def go_back(self, command: GoBack) -> None:
         """Go back to the run of an act as it was left; restart it if it is not kept."""
-        params, start, _, act, _ = command
+        params, act, runs = command
         run, left = self.run, self.left.pop(act)
         if left is None:
-            (self.begin_with if start else self.change_start)(params, act)
+            (self.begin_with if runs else self.change_start)(params, act)
             run.snapshots.show_restarted()
             return
         if left.rows is None:
             self.resume(left.params, left.state, act)
         else:
             self.begin_with(left.params, act, left)
-        run.running = left.running and not run.halted
         if run.seat is not None and not run.running:
             run.seat.tell_others(Pause())
-        self.take(params)  # they may have changed just before the run was left
+        self.take_back(params)  # they may have changed just before the run was left
 
     def return_to(self, left: LeftRun) -> None:
         """Restart the scene, then restore a run that was left, with its plots."""

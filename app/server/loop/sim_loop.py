@@ -16,7 +16,10 @@ from app.lab.process.shared import ON_HUB
 from app.messages import (
     Advance,
     Ask,
+    Begin,
+    Change,
     Command,
+    GoBack,
     GoOn,
     GrabTo,
     Halt,
@@ -25,11 +28,12 @@ from app.messages import (
     Play,
     Release,
     Reset,
+    Resume,
     RunOn,
+    RunState,
     SceneCommand,
     StepOnce,
     StudentAnswer,
-    Take,
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
@@ -41,8 +45,7 @@ from app.server.loop.commands import (
     STEPS,
     Motion,
     Record,
-    begins_anew,
-    effect_of_takes,
+    effect_of_all,
     is_urgent,
     merged,
 )
@@ -171,10 +174,9 @@ class SimLoop:
         """Cancel the solve for the new commands, or answer them with a snapshot."""
         self.take_in()
         run, activity, whole = self.run, self.run.activity, is_kept_whole()
-        params, effect = effect_of_takes(self.record, self.waiting)
-        anew = any(map(begins_anew, self.waiting)) or effect == "start"
-        asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
-        if anew and activity != NOTHING:
+        params, effect = effect_of_all(self.record, self.waiting)
+        asked = any(map(is_urgent, self.waiting)) or effect in ("forces", "start")
+        if effect == "start" and activity != NOTHING:
             run.cancel(ABANDON if whole else 1)
             return
         if asked and activity.may_end and not whole:
@@ -182,7 +184,7 @@ class SimLoop:
             return
         if effect == "look" and not asked and activity != OTHER_FORCES:
             self.scene.params = params
-            self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
+            self.waiting = [command for command in self.waiting if not isinstance(command, Change)]
         within_steps = activity == STEPS and not whole
         drags = self.drags_waiting() if within_steps else []
         for command in drags:
@@ -199,16 +201,16 @@ class SimLoop:
         return drags
 
     def handle_waiting(self) -> bool:
-        """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
-        that concerns the scene begins it again; True if there was one.
+        """Merge and handle the waiting commands; True if anything was handled.
 
+        A cancelled beginning is repeated first, unless the first command that concerns the scene begins it again.
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """
         run, waiting, self.waiting = self.run, self.waiting, []
-        left, unfinished = merged(waiting, self.record), run.unfinished
+        left, unfinished = merged(waiting), run.unfinished
         if unfinished is not None:
             first = [command for command in left if not isinstance(command, Motion)][:1]
-            if any(map(begins_anew, first)) or effect_of_takes(self.record, first)[1] == "start":
+            if effect_of_all(self.record, first)[1] == "start":
                 run.unfinished = None
             else:
                 run.begin(unfinished)
@@ -221,7 +223,7 @@ class SimLoop:
         """Carry out one command. A scene that could not begin only takes other values."""
         run = self.run
         match command:
-            case _ if run.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
+            case _ if run.state is RunState.UNMADE and isinstance(command, SceneCommand | StepOnce | RunOn):
                 pass
             case Play():
                 run.play()
@@ -235,7 +237,7 @@ class SimLoop:
                 run.step_by_hand(steps)
             case Halt(reason):
                 run.halt(reason)
-            case Take():
+            case Change() | Begin() | Resume() | GoBack():
                 self.runs.obey(command)
             case Reset(act):
                 self.runs.begin_again(act)

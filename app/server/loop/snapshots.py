@@ -13,6 +13,7 @@ from app.messages import (
     RunIdentity,
     RunLine,
     RunRow,
+    RunState,
     Snapshot,
     Status,
     where_not_finite,
@@ -45,12 +46,19 @@ class ShownRun(Protocol):
     fixed_step: FixedStep
     counts: collections.Counter[str]
     activity: Activity
-    running: bool
-    halted: str
+    state: RunState
     halted_with: BaseParams
-    unmade: bool
-    unfinished: Callable[[], None] | None
     replay: Replay | None
+
+    @property
+    def running(self) -> bool:
+        """True if it goes on by itself."""
+        ...
+
+    @property
+    def halted(self) -> str:
+        """Reason why it has stopped, or ""."""
+        ...
 
     def halt(self, reason: str) -> None:
         """Pause, and keep the reason for the panel."""
@@ -103,12 +111,12 @@ class Snapshots:
         params = run.scene.params
         run.activity = Activity("frame", may_end=run.clock.now() - self.whole_at < MAX_TIME_WITHOUT_FRAME)
         try:
-            if run.unfinished is not None or run.unmade:
+            if run.state.is_making or run.state is RunState.UNMADE:
                 self.is_current = True  # a scene that could not be made has nothing else
                 return self.without_frame()
-            found = self.collect(serial)
+            latest = self.collect(serial)
             self.is_current, self.whole_at = run.scene.params is params, run.clock.now()
-            return found._replace(serial=run.counts["snapshots"])  # controls may have received others
+            return latest._replace(serial=run.counts["snapshots"])  # controls may have received others
         except InterruptionError:
             run.counts["pictures ended early"] += 1
             self.is_current = False
@@ -167,7 +175,7 @@ class Snapshots:
     def keep_state(self) -> Checkpoint | None:
         """Checkpoint of a running scene, a few times a second; rarely if copying takes long."""
         run, clock = self.run, self.run.clock
-        if not run.running or run.activity == STEPS or run.replay is not None:
+        if run.state is not RunState.RUNNING or run.activity == STEPS:
             return None
         if clock.wall < self.keep_at or not run.audience():
             return None
@@ -190,7 +198,7 @@ class Snapshots:
         is_rated = elapsed >= MIN_RATE_TIME and run.running
         capped = run.fixed_step.capped and run.running
         return Status(
-            running=run.running,
+            state=run.state,
             time=simulated,
             steps=run.counts["steps"],
             speed=run.scene.params.speed,
@@ -200,10 +208,9 @@ class Snapshots:
             halted=run.halted,
             faster=run.scene.faster if capped else "",
             run=run.identity,
-            unmade=run.unmade,
             pace=run.scene.pace,
             restarted=wall < self.restarted_until and run.identity.number == self.restarted,
-            outdated=bool(run.halted) and effect_of_change(run.halted_with, run.scene.params) not in (None, "look"),
+            outdated=run.state.has_stopped and is_other_run(run.halted_with, run.scene.params),
             replayed=None if moment is None else (moment.low, moment.high),
         )
 
@@ -219,6 +226,11 @@ class Snapshots:
     def show_restarted(self) -> None:
         """Have the panel report for a while that an undo had to restart a run."""
         self.restarted_until, self.restarted = self.run.clock.wall + RESTARTED_SHOWN, self.run.identity.number
+
+
+def is_other_run(before: BaseParams, now: BaseParams) -> bool:
+    """True if two records differ in more than the look of a run."""
+    return effect_of_change(before, now) not in (None, "look")
 
 
 def kept_state(run: ShownRun) -> Checkpoint:

@@ -4,7 +4,7 @@ import dataclasses
 import statistics
 from typing import Any
 
-from app.messages import Take
+from app.messages import Change
 from app.scenes import NAMES, scene_named
 from app.scenes.ahead.compiling import Compiling
 from app.scenes.timer import effort_clock
@@ -28,7 +28,7 @@ def cost(name: str, events: int) -> dict[str, Any]:
     for number in range(events):
         moved = dataclasses.replace(params, speed=1.0 + 1e-4 * number)
         start = effort_clock()
-        gate.admit([Take(moved)])
+        gate.admit([Change(moved, "look")])
         spent.append(effort_clock() - start)
     size = " x ".join(map(str, LARGE.get(name, {}).values()))
     return {"scene": f"{name} {size}".strip(), "a slider event [ms]": 1e3 * statistics.median(spent)}

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import viser
 
-from app.messages import Play, RunOn, Take
+from app.messages import Begin, Change, Play, RunOn, RunState
 from app.panel.controls.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
@@ -70,7 +70,8 @@ def test_the_panel_shows_at_once_that_the_scene_halts(lab: Viewer) -> None:
     lab.panel.update(lab.loop.latest, [])
     shown = lab.panel.head.status.content
     status = lab.loop.latest.status
-    other = lab.loop.latest._replace(status=status._replace(running=not status.running))
+    state = RunState.PAUSED if status.running else RunState.RUNNING
+    other = lab.loop.latest._replace(status=status._replace(state=state))
     lab.panel.status_at = time.monotonic() + 1.0
     lab.panel.update(other, [])
     assert lab.panel.head.status.content != shown
@@ -195,13 +196,13 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
-    assert posted == [Take(panel.settings.params, start=True, act=panel.settings.history.act)]
+    assert posted == [Begin(panel.settings.params, panel.settings.history.act)]
     panel.head.preset.value = before
     chosen: list[Any] = panel.head.preset._impl.update_cb
     for callback in chosen:
         coroutines.run(callback(SimpleNamespace(target=panel.head.preset, client_id=1)))
     time.sleep(0.3)
-    assert [c.start for c in posted] == [True, True]
+    assert [type(command) for command in posted] == [Begin, Begin]
 
 
 def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(viewer: Viewer) -> None:
@@ -217,12 +218,12 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
     for callback in button._impl.update_cb:
         coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
     assert panel.settings.params.length == 84.5
-    assert [type(command) for command in posted] == [Take]
+    assert [type(command) for command in posted] == [Change]
     assert posted[0].params == panel.settings.params
     folders = [one.folder.order for one in panel.controls_tab.readings.notes.values()]
     assert list(panel.controls_tab.readings.notes) == ["Tensions", "Bed and slack"]
     assert panel.controls_tab.readings.readout.order < folders[0] < folders[1] < panel.controls.folders["Line"].order
-    viewer.commands.put(Take(panel.settings.params))
+    viewer.commands.put(posted[0])
     wait_for(lambda: not button.visible)
     assert "cannot reach" not in panel.controls["length"].line.content
 

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import ChartLine, Snapshot, Status
+from app.messages import ChartLine, RunState, Snapshot, Status
 from app.panel.plots import KEPT_DASH, SHOWN_ROWS, Plots, at_times, beside, gaps_in, with_kept, without
 from app.scenes import scene_named
 from app.scenes.charts import Chart, lines_of, with_numbers
 
-STATUS = Status(True, 1.0, 1, 1.0, 1.0, False, 20.0, "")
+STATUS = Status(RunState.RUNNING, 1.0, 1, 1.0, 1.0, False, 20.0, "")
 
 
 def test_kept_curves_stand_at_their_times_beside_those_of_the_next_run() -> None:

@@ -1,11 +1,12 @@
 """The settings of a scene without a server: each change is one command, and is told once."""
 
+import dataclasses
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from app.messages import Take
+from app.messages import Change, GoBack
 from app.panel.history import SceneRequest
 from app.panel.settings import Placing, SceneSettings
 from app.render.cameras import ClientCamera
@@ -13,6 +14,7 @@ from app.scenes import scene_named
 from app.scenes.contract import Advice
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.setups import Setup
+from sim.parameters import Effect
 
 CAMERA = (1.0, 2.0, 3.0), (0.0, 0.0, 1.0)
 
@@ -39,7 +41,7 @@ def test_a_value_is_bounded_posted_and_told_once(told: Told) -> None:
     told.settings.set("points", 10**6)
     expected = RopeParams(points=1000)
     assert told.settings.params == expected
-    assert told.posted == [Take(expected, act=1)]
+    assert told.posted == [Change(expected, "forces", 1)]
     assert told.shown == [expected]
     told.settings.set("points", 1000)
     assert (len(told.posted), len(told.shown)) == (1, 1)
@@ -47,10 +49,20 @@ def test_a_value_is_bounded_posted_and_told_once(told: Told) -> None:
 
 def test_an_advice_is_set_and_the_scene_begins_again(told: Told) -> None:
     told.settings.follow(Advice("time_step", 1 / 500, "1/500 s"))
-    assert told.posted == [Take(RopeParams(time_step=1 / 500), act=2)]
+    assert told.posted == [Change(RopeParams(time_step=1 / 500), "start", 2)]
     told.settings.undo()
-    assert told.posted[1:] == [Take(RopeParams(), act=1, back=True)]
+    assert told.posted[1:] == [GoBack(RopeParams(), 1)]
     assert (told.settings.params, len(told.posted)) == (RopeParams(), 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "effect"), [("grid", False, "look"), ("gravity", 3.0, "forces"), ("stiffness", 90.0, "forces")]
+)
+def test_a_change_and_its_undo_carry_their_effect(told: Told, name: str, value: object, effect: Effect) -> None:
+    told.settings.set(name, value)
+    told.settings.undo()
+    changed = dataclasses.replace(RopeParams(), **{name: value})
+    assert told.posted == [Change(changed, effect, 1), Change(RopeParams(), effect, 1)]
 
 
 def test_all_plots_open_and_close_together(told: Told) -> None:
@@ -76,7 +88,7 @@ def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: T
     assert len(told.posted) == 1
     settings.undo()
     assert settings.params == RopeParams()
-    assert told.posted[-1] == Take(RopeParams(), act=1, back=True)
+    assert told.posted[-1] == GoBack(RopeParams(), 1)
 
 
 def test_an_error_of_one_watcher_silences_no_other(told: Told) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import GrabTo, Play, Reset, StepOnce, TogglePlay
+from app.messages import GrabTo, Play, Reset, RunState, StepOnce, TogglePlay
 from app.panel.recording.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.ahead.compiling import Job
@@ -189,7 +189,7 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
         assert lab.loop.run.halted == said
         assert not lab.loop.run.running
     wait_for(lambda: said in panel.head.status.content)
-    assert lab.loop.latest.status.unmade
+    assert lab.loop.latest.status.state is RunState.UNMADE
     assert not panel.head.remedy.button.visible  # a shorter step does not help
     panel.settings.set("damping", 3.0)  # which alone would let the motion continue
     wait_for(lambda: lab.scene.params.damping == 3.0)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from app.messages import Checkpoint, RunIdentity, Snapshot, Status
+from app.messages import Checkpoint, RunIdentity, RunState, Snapshot, Status
 from app.panel.recording import recorder as module
 from app.panel.recording.recorder import Recorder, arrays_of_frame
 from app.panel.recording.recording_files import arrays_of
@@ -22,7 +22,8 @@ class Frame(NamedTuple):
 
 
 def snapshot(number: int, run: RunIdentity = RUN, running: bool = True, points: Any = None) -> Any:
-    status = Status(running, number * INTERVAL, number, 1.0, 1.0, False, 20.0, "", run)
+    state = RunState.RUNNING if running else RunState.PAUSED
+    status = Status(state, number * INTERVAL, number, 1.0, 1.0, False, 20.0, "", run)
     points = np.full((10, 3), number, np.float32) if points is None else points
     return Snapshot(number, Frame(number, points), status, None, None)
 

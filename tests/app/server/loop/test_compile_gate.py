@@ -2,7 +2,7 @@
 
 from concurrent.futures import Future
 
-from app.messages import Advance, Checkpoint, Pause, Play, Reset, Take
+from app.messages import Advance, Begin, Change, Checkpoint, GoBack, Pause, Play, Reset, Resume
 from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.rope import SCENE
 from app.scenes.rope.parameters import RopeParams
@@ -37,7 +37,7 @@ def made() -> tuple[Queue, CompileGate]:
 
 def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
     queue, gate = made()
-    chosen = Take(RopeParams(integrator="rk4"))
+    chosen = Change(RopeParams(integrator="rk4"), "forces")
     assert gate.admit([chosen]) == []
     assert "rk4" in gate.notice
     assert queue.wanted == ["rk4"]
@@ -51,17 +51,26 @@ def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
 
 def test_going_back_to_what_is_there_ends_the_wait() -> None:
     queue, gate = made()
-    assert gate.admit([Take(RopeParams(integrator="rk4"))]) == []
-    back = Take(RopeParams(gravity=3.0))
+    assert gate.admit([Change(RopeParams(integrator="rk4"), "forces")]) == []
+    back = Change(RopeParams(gravity=3.0), "forces")
     assert gate.admit([back]) == [back]
     assert not gate.notice
     queue.finish("rk4")
     assert gate.admit([]) == []
 
 
+def test_a_change_that_drops_a_waiting_one_has_its_effect_on_what_the_loop_has() -> None:
+    _, gate = made()
+    assert gate.admit([Change(RopeParams(integrator="rk4", gravity=3.0), "forces")]) == []
+    looks = RopeParams(speed=0.5)
+    assert gate.admit([Change(looks, "forces")]) == [Change(looks, "look")]
+    assert gate.admit([Change(RopeParams(integrator="rk4"), "forces")]) == []
+    assert gate.admit([Change(looks, "forces")]) == [Change(looks, "look")]
+
+
 def test_a_preset_is_held_until_it_can_run() -> None:
     queue, gate = made()
-    preset = Take(RopeParams(integrator="tr_bdf2"), start=True)
+    preset = Begin(RopeParams(integrator="tr_bdf2"))
     assert gate.admit([preset, Pause()]) == [Pause()]
     queue.finish("tr_bdf2")
     assert gate.admit([Play()]) == [preset, Play()]
@@ -70,7 +79,7 @@ def test_a_preset_is_held_until_it_can_run() -> None:
 
 def test_a_reset_does_not_overtake_the_preset_before_it() -> None:
     queue, gate = made()
-    preset = Take(RopeParams(integrator="tr_bdf2"), start=True, act=2)
+    preset = Begin(RopeParams(integrator="tr_bdf2"), 2)
     assert gate.admit([Reset(2)]) == [Reset(2)]
     assert gate.admit([preset, Reset(3), Reset(4)]) == []
     queue.finish("tr_bdf2")
@@ -81,8 +90,8 @@ def test_a_reset_does_not_overtake_the_preset_before_it() -> None:
 def test_an_undo_drops_all_that_waits() -> None:
     queue, gate = made()
     changed = RopeParams(integrator="tr_bdf2", gravity=3.0)
-    assert gate.admit([Take(changed, start=True, act=2), Reset(3), Take(changed, act=3)]) == []
-    undone = Take(RopeParams(), act=1, back=True)
+    assert gate.admit([Begin(changed, 2), Reset(3), Change(changed, "look", 3)]) == []
+    undone = GoBack(RopeParams(), 1)
     assert gate.admit([undone]) == [undone]
     assert not gate.notice
     queue.finish("tr_bdf2")
@@ -91,15 +100,15 @@ def test_an_undo_drops_all_that_waits() -> None:
 
 def test_what_can_run_begins_the_run_of_the_preset_that_it_drops() -> None:
     _, gate = made()
-    assert gate.admit([Take(RopeParams(integrator="tr_bdf2", gravity=3.0), start=True, act=2)]) == []
-    changed = Take(RopeParams(gravity=3.0), act=2)
-    assert gate.admit([changed]) == [changed._replace(start=True)]
+    assert gate.admit([Begin(RopeParams(integrator="tr_bdf2", gravity=3.0), 2)]) == []
+    changed = Change(RopeParams(gravity=3.0), "forces", 2)
+    assert gate.admit([changed]) == [Begin(changed.params, 2)]
 
 
 def test_nothing_drops_a_moment_to_go_on_from_but_what_begins_again() -> None:
     queue, gate = made()
-    moment = Take(RopeParams(integrator="rk4"), state=Checkpoint(0.0, {}), act=2)
-    changed = Take(RopeParams(gravity=3.0), act=2)
+    moment = Resume(RopeParams(integrator="rk4"), Checkpoint(0.0, {}), 2)
+    changed = Change(RopeParams(gravity=3.0), "forces", 2)
     assert gate.admit([moment, changed]) == []
     queue.finish("rk4")
     assert gate.admit([]) == [moment, changed]
@@ -107,8 +116,8 @@ def test_nothing_drops_a_moment_to_go_on_from_but_what_begins_again() -> None:
 
 def test_of_two_presets_only_the_last_is_loaded() -> None:
     queue, gate = made()
-    later = Take(RopeParams(gravity=3.0), start=True)
-    assert gate.admit([Take(RopeParams(integrator="tr_bdf2"), start=True)]) == []
+    later = Begin(RopeParams(gravity=3.0))
+    assert gate.admit([Begin(RopeParams(integrator="tr_bdf2"))]) == []
     assert gate.admit([later]) == [later]
     queue.finish("tr_bdf2")
     assert gate.admit([]) == []
@@ -116,8 +125,8 @@ def test_of_two_presets_only_the_last_is_loaded() -> None:
 
 def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_start() -> None:
     queue, gate = made()
-    preset = Take(RopeParams(integrator="rk4"), start=True)
-    moved = [Take(RopeParams(integrator="rk4", gravity=gravity)) for gravity in (3.0, 4.0, 5.0)]
+    preset = Begin(RopeParams(integrator="rk4"))
+    moved = [Change(RopeParams(integrator="rk4", gravity=gravity), "forces") for gravity in (3.0, 4.0, 5.0)]
     assert gate.admit([preset]) == []
     for change in moved:
         assert gate.admit([change]) == []
@@ -127,8 +136,8 @@ def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_st
 
 def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
     queue, gate = made()
-    kept = Take(RopeParams(integrator="rk4"), state=Checkpoint(0.0, {}))
-    moved = Take(RopeParams(integrator="rk4", gravity=3.0))
+    kept = Resume(RopeParams(integrator="rk4"), Checkpoint(0.0, {}))
+    moved = Change(RopeParams(integrator="rk4", gravity=3.0), "forces")
     assert gate.admit([kept, moved]) == []
     queue.finish("rk4")
     assert gate.admit([]) == [kept, moved]
@@ -136,28 +145,28 @@ def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
 
 def test_a_newer_record_that_can_run_drops_the_preset_that_waits() -> None:
     queue, gate = made()
-    assert gate.admit([Take(RopeParams(integrator="rk4"), start=True)]) == []
-    undone = Take(RopeParams(gravity=3.0), act=1, back=True)
+    assert gate.admit([Begin(RopeParams(integrator="rk4"))]) == []
+    undone = GoBack(RopeParams(gravity=3.0), 1)
     assert gate.admit([undone]) == [undone]
     assert not gate.notice
     queue.finish("rk4")
     assert gate.admit([]) == []
-    later = Take(RopeParams(gravity=5.0), start=True)
+    later = Begin(RopeParams(gravity=5.0))
     assert gate.admit([later]) == [later]
 
 
 def test_a_preset_that_can_run_since_a_moment_ago_is_not_dropped_for_a_newer_record() -> None:
     queue, gate = made()
-    preset = Take(RopeParams(integrator="rk4"), start=True)
+    preset = Begin(RopeParams(integrator="rk4"))
     assert gate.admit([preset]) == []
     queue.finish("rk4")
-    newer = Take(RopeParams(integrator="rk4", gravity=3.0))
+    newer = Change(RopeParams(integrator="rk4", gravity=3.0), "forces")
     assert gate.admit([newer]) == [preset, newer]
 
 
 def test_a_program_waits_for_the_time_after_what_it_has_set() -> None:
     queue, gate = made()
-    change, wait = Take(RopeParams(integrator="rk4")), Advance(1.0, Future())
+    change, wait = Change(RopeParams(integrator="rk4"), "forces"), Advance(1.0, Future())
     assert gate.admit([change, wait, Play()]) == [Play()]
     assert gate.admit([]) == []
     queue.finish("rk4")

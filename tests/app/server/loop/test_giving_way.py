@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.messages import GrabTo, Pause, Place, Play, Reset, StudentAnswer, Take
+from app.messages import Begin, Change, GrabTo, Pause, Place, Play, Reset, StudentAnswer
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
@@ -19,12 +19,13 @@ from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, 
 from sim.ocean.fluids.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics.statistics import open_sea_height
+from sim.parameters import effect_of_change
 
 
 def ask(loop, **changes):
     """Have a loop asked for a change of its parameters; returns the record."""
     params = dataclasses.replace(loop.scene.params, **changes)
-    loop.commands.put(Take(params))
+    loop.commands.put(Change(params, effect_of_change(loop.scene.params, params) or "look"))
     return params
 
 
@@ -158,7 +159,7 @@ def test_other_forces_after_a_reset_that_was_ended_early_follow_it(busy, ended_o
     busy.commands.put(Reset())
     ask(busy, stiffness=90.0)
     busy.tick(0.0)
-    assert [type(command) for command in busy.waiting] == [Take]  # of a scene that is not made
+    assert [type(command) for command in busy.waiting] == [Change]  # of a scene that is not made
     busy.tick(0.0)
     assert ended_once == [800.0, 800.0]
     assert (busy.run.unfinished, busy.run.halted, busy.scene.params.stiffness) == (None, "", 90.0)
@@ -166,10 +167,10 @@ def test_other_forces_after_a_reset_that_was_ended_early_follow_it(busy, ended_o
 
 def test_a_preset_that_was_ended_early_for_another_leaves_nothing_of_itself(busy, ended_once):
     first, second = (dataclasses.replace(busy.scene.params, stiffness=k) for k in (90.0, 70.0))
-    for command in (Take(first, start=True), Take(dataclasses.replace(first, gravity=1.0))):
+    for command in (Begin(first), Change(dataclasses.replace(first, gravity=1.0), "forces")):
         busy.commands.put(command)
     busy.tick(0.0)
-    busy.commands.put(Take(second, start=True))
+    busy.commands.put(Begin(second))
     busy.tick(0.0)
     assert ended_once == [90.0, 70.0]
     assert (busy.run.unfinished, busy.scene.params, busy.waiting) == (None, second, [])
@@ -190,7 +191,7 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
     busy.run.activity, busy.scene.change_forces = NOTHING, change
     busy.scene.reset = lambda: resets.append(reset())
     frame = busy.latest.frame
-    busy.runs.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
+    busy.runs.take(dataclasses.replace(busy.scene.params, stiffness=90.0), "forces")
     busy.run.snapshots.publish()
     assert ended == [ends]
     assert (busy.latest.frame is frame) == ends  # nothing is shown of what is half done
@@ -222,7 +223,7 @@ def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
         busy.give_turn()
     assert busy.run.request[STOP] == 0
     assert busy.latest.params is params
-    assert busy.waiting == [Take(params), Pause(), GrabTo(1, (0.0, 0.0, 0.0))]
+    assert busy.waiting == [Change(params, "forces"), Pause(), GrabTo(1, (0.0, 0.0, 0.0))]
     busy.give_turn()
     assert busy.run.request[STOP] == 1
 
@@ -353,7 +354,8 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
         return frame()
 
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
-    busy.run.running, busy.run.activity, busy.scene.frame = False, NOTHING, long_frame
+    busy.handle(Pause())
+    busy.run.activity, busy.scene.frame = NOTHING, long_frame
     params = ask(busy, points=5)
     busy.run.snapshots.publish()
     assert (ended, busy.run.snapshots.is_current, busy.run.halted) == ([1], False, "")
@@ -371,7 +373,8 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.run.running, busy.run.activity, busy.run.snapshots.is_current = False, NOTHING, False
+    busy.handle(Pause())
+    busy.run.activity, busy.run.snapshots.is_current = NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)
@@ -384,7 +387,8 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
         busy.give_turn()
         return found
 
-    frame, busy.run.running, busy.run.activity = busy.scene.frame, False, NOTHING
+    busy.handle(Pause())
+    frame, busy.run.activity = busy.scene.frame, NOTHING
     busy.scene.frame = long_frame
     ask(busy, grid=False)
     busy.run.snapshots.publish()

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.messages import Checkpoint, Pause, Play, Reset, StepOnce, Take
+from app.messages import Begin, Checkpoint, GoBack, Pause, Play, Reset, Resume, StepOnce
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
 from app.server.loop import run as runs
@@ -58,13 +58,13 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
     rows = tuple(loop.run.snapshots.kept_rows)
     assert time > 0.0
     other = make_setup(kind, list(kind.presets)[1]).params
-    moment = Take(params, state=Checkpoint(loop.scene.keep(), {}, 1), act=2)
-    changes = {"preset": Take(other, start=True, act=2), "reset": Reset(2), "moment": moment}
+    moment = Resume(params, Checkpoint(loop.scene.keep(), {}, 1), 2)
+    changes = {"preset": Begin(other, 2), "reset": Reset(2), "moment": moment}
     loop.handle(changes[change])
     loop.handle(Play())
     go_on(loop)
     number = loop.run.identity.number
-    loop.handle(Take(params, start=True, act=1, back=True))
+    loop.handle(GoBack(params, 1, runs=True))
     assert (loop.scene.time, loop.run.running, loop.run.halted) == (time, False, "")
     assert loop.run.identity[:3] == (number + 1, 1, 0)  # so that the recording and the cameras are those of another run
     check_same(loop, before)
@@ -79,9 +79,9 @@ def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch:
     monkeypatch.setattr(runs, "MAX_BYTES", 1000.0)
     loop = begun("rope")
     params = loop.scene.params
-    loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, act=2))
+    loop.handle(Begin(make_setup(scene_named("rope"), "Pendulum").params, 2))
     assert (len(loop.runs.left.runs), loop.runs.left.memory.bytes) == (0, 0)
-    loop.handle(Take(params, start=True, act=1, back=True))
+    loop.handle(GoBack(params, 1, runs=True))
     assert (loop.scene.time, loop.run.running, loop.run.snapshots.status().restarted) == (0.0, True, True)
     loop.tick(10.0)
     assert not loop.run.snapshots.status().restarted
@@ -93,7 +93,7 @@ def test_the_words_on_a_run_that_is_not_kept_go_with_that_run(monkeypatch: pytes
     loop.handle(Reset(2))
     monkeypatch.setattr(runs, "MAX_BYTES", 0.0)
     loop.runs.left = runs.LeftRuns()
-    loop.handle(Take(params, start=True, act=1, back=True))
+    loop.handle(GoBack(params, 1, runs=True))
     assert loop.run.snapshots.status().restarted
     loop.handle(Reset(3))
     assert not loop.run.snapshots.status().restarted
@@ -108,8 +108,8 @@ def test_a_speed_never_crosses_two_runs(change: str) -> None:
     loop.handle(Reset(2))
     loop.handle(Play())
     loop.tick(0.1)
-    command = Take(params, start=True, act=1, back=True)
-    loop.handle(command if change == "undo" else Take(params, state=Checkpoint(moment, {}, 1), act=3))
+    command = GoBack(params, 1, runs=True)
+    loop.handle(command if change == "undo" else Resume(params, Checkpoint(moment, {}, 1), 3))
     speeds: list[float | None] = []
     for _ in range(20):
         loop.tick(0.1)
@@ -142,7 +142,7 @@ def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
     """A preset whose kernels are still compiled, and an undo that comes first."""
     loop = begun("rope")
     time = loop.scene.time
-    loop.handle(Take(loop.scene.params, start=True, act=1, back=True))
+    loop.handle(GoBack(loop.scene.params, 1, runs=True))
     assert (loop.scene.time, loop.run.identity.number) == (time, 1)
 
 

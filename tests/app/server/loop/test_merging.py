@@ -13,6 +13,9 @@ import pytest
 from app.messages import (
     Advance,
     Ask,
+    BaseParams,
+    Begin,
+    Change,
     Checkpoint,
     Command,
     GrabTo,
@@ -24,18 +27,20 @@ from app.messages import (
     PointAlong,
     Release,
     Reset,
+    Resume,
+    RunState,
     StepOnce,
     StudentAnswer,
-    Take,
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.loop.commands import Record, merged
+from app.server.loop.commands import merged
 from app.server.loop.replay import Replay
 from app.server.loop.run import Goal
 from app.server.loop.sim_loop import SimLoop
+from sim.parameters import Effect, effect_of_change
 from tests.app.server.loop.test_sim_loop import Params
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -125,25 +130,25 @@ class Lane:
 
     def after(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
         """The state after a command. Commands without content are equal as tuples, so that they are told by kind."""
-        key = state, type(command), command.steps if isinstance(command, StepOnce) else id(command)
+        key = state, type(command), command if isinstance(command, StepOnce | Change) else id(command)
         if key not in self.known:
             self.known[key] = self.handled(state, command)
         return self.known[key]
 
     def begin(self, **changes: object) -> tuple[Any, ...]:
-        """A state of the loop after half a second, with other values of `running`, `halted`, `replay`, `goal`."""
+        """A state of the loop after half a second, with other values of `state`, `reason`, `replay`, `goal`."""
         self.scene.__init__()
         self.scene.advance(50)
-        given = {"running": True, "halted": "", "replay": None, "goal": None, **changes}
-        return self.scene.state, given["running"], given["halted"], given["replay"], given["goal"], False, ()
+        values = {"state": RunState.RUNNING, "reason": "", "replay": None, "goal": None, **changes}
+        return self.scene.state, values["state"], values["reason"], values["replay"], values["goal"], False, ()
 
     def handled(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
         """The state after a command; the answers to programs are part of it."""
         loop, scene = self.loop, self.scene
-        scene.state, loop.run.running, loop.run.halted, shown, goal, starts, answers = state
-        loop.run.replay = None if shown is None else Replay(MOMENTS, "it diverged")
+        scene.state, loop.run.state, loop.run.reason, moment, goal, starts, answers = state
+        loop.run.replay = None if moment is None else Replay(MOMENTS, "it diverged")
         if loop.run.replay is not None:
-            loop.run.replay.number, loop.run.replay.shown_for = shown
+            loop.run.replay.number, loop.run.replay.shown_for = moment
         waiting: Future[float] = Future()
         loop.run.goal = None if goal is None else Goal(goal[0], waiting, goal[1])
         loop.run.counts["starts"] = starts
@@ -157,7 +162,7 @@ class Lane:
         if waiting.done():
             answers = (*answers, str(waiting.exception()))
         return (
-            scene.state, loop.run.running, loop.run.halted,
+            scene.state, loop.run.state, loop.run.halted,
             None if loop.run.replay is None else (loop.run.replay.number, loop.run.replay.shown_for),
             None if loop.run.goal is None else (loop.run.goal.until, loop.run.goal.was_running),
             loop.run.counts["starts"] > 0, answers,
@@ -165,11 +170,13 @@ class Lane:
 
 
 MOMENTS = tuple(LastFrame(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
-COMMANDS: tuple[Command, ...] = (
+CHANGES = (
+    Params(grid=False), Params(stiffness=3.0), Params(points=5), Params(), Params(points=5, stiffness=3.0),
+)  # fmt: skip
+COMMANDS: tuple[Command, ...] = (  # the effect of a change depends on those before it: see `posted`
     Play(), Pause(), TogglePlay(), StepOnce(), StepOnce(2), Halt("no picture"), Reset(),
-    Take(Params(grid=False)), Take(Params(stiffness=3.0)), Take(Params(points=5)), Take(Params()),
-    Take(Params(points=5, stiffness=3.0)), Take(Params(stiffness=4.0), start=True),
-    Take(Params(stiffness=5.0), state=Checkpoint(0.25, {})),
+    *(Change(params, "look") for params in CHANGES), Begin(Params(stiffness=4.0)),
+    Resume(Params(stiffness=5.0), Checkpoint(0.25, {})),
     Place("root", (1.0, 0.0, 0.0)), Place("camera", (2.0, 0.0, 0.0)),
     GrabTo(0, (3.0, 0.0, 0.0)), GrabTo(1, (4.0, 0.0, 0.0)), GrabTo(1, (5.0, 0.0, 0.0)), GrabTo(1, (6.0, 0.0, 0.0), 7),
     Release(), PointAlong((8.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
@@ -177,10 +184,10 @@ COMMANDS: tuple[Command, ...] = (
 )  # fmt: skip
 STATES: dict[str, dict[str, object]] = {
     "running": {},
-    "paused": {"running": False},
-    "halted": {"running": False, "halted": "it diverged"},
-    "replayed": {"replay": (0, 0.0)},
-    "replayed, paused": {"running": False, "replay": (1, 0.0)},
+    "paused": {"state": RunState.PAUSED},
+    "halted": {"state": RunState.HALTED, "reason": "it diverged"},
+    "replayed": {"state": RunState.REPLAYING, "replay": (0, 0.0)},
+    "replayed, paused": {"state": RunState.REPLAY_PAUSED, "replay": (1, 0.0)},
     "a program waits": {"goal": (9.0, False)},
 }
 
@@ -192,7 +199,8 @@ def test_all_sequences_of_commands_do_the_same_merged_as_in_order(length: int, l
     begins = [lane.begin(**changes) for changes in STATES.values()]
     after, count = lane.after, 0
     for sequence in sequences(length):
-        several = merged(sequence, Record(Params(), 1))
+        sequence = posted(Params(), sequence)
+        several = merged(sequence)
         if len(several) == len(sequence):
             assert all(a is b for a, b in zip(several, sequence, strict=True))
             continue
@@ -202,12 +210,42 @@ def test_all_sequences_of_commands_do_the_same_merged_as_in_order(length: int, l
     assert count > least
 
 
+@pytest.mark.parametrize(
+    ("effects", "left"),
+    [
+        (("look", "forces", "look"), ["forces"]),
+        (("forces", "start"), ["start"]),
+        (("start", "look"), ["start"]),
+        (("start", "forces"), ["start", "forces"]),
+        (("start", "forces", "look", "forces"), ["start", "forces"]),
+        (("start", "forces", "start"), ["start"]),
+    ],
+)
+def test_changes_merge_into_one_of_their_greatest_effect(effects: tuple[Effect, ...], left: list[Effect]) -> None:
+    changes = [Change(Params(stiffness=float(number)), effect) for number, effect in enumerate(effects)]
+    several = merged(changes)
+    assert [command.effect for command in several if isinstance(command, Change)] == left
+    assert several[-1] == Change(changes[-1].params, left[-1])
+
+
 def test_grabs_of_one_particle_by_one_browser_are_one() -> None:
     """Another browser cannot take a grabbed particle, and another particle is a new grab."""
     first, second = GrabTo(1, (1.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 7)
-    assert merged([first, second], Record(Params(), 1)) == [second]
+    assert merged([first, second]) == [second]
     for other in (GrabTo(2, (2.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 8)):
-        assert merged([first, other], Record(Params(), 1)) == [first, other]
+        assert merged([first, other]) == [first, other]
+
+
+def posted(params: BaseParams, commands: Iterable[Command]) -> tuple[Command, ...]:
+    """Commands in which each change has its effect after those before it, as a panel posts it. params: at first."""
+    done: list[Command] = []
+    for command in commands:
+        if isinstance(command, Change):
+            command = command._replace(effect=effect_of_change(params, command.params) or "look")
+        if isinstance(command, Change | Begin | Resume):
+            params = command.params
+        done.append(command)
+    return tuple(done)
 
 
 def sequences(most: int) -> Iterable[tuple[Command, ...]]:
@@ -224,14 +262,15 @@ def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> Non
     earlier.advance(20)
     stiffer = dataclasses.replace(params, stiffness=900.0)
     commands: tuple[Command, ...] = (
-        StepOnce(3), Reset(), Take(stiffer), Take(dataclasses.replace(stiffer, gravity=3.0)), Take(params),
-        Take(stiffer, start=True), Take(params, state=Checkpoint(earlier.keep(), {})),
+        StepOnce(3), Reset(), Change(stiffer, "look"), Change(dataclasses.replace(stiffer, gravity=3.0), "look"),
+        Change(params, "look"),
+        Begin(stiffer), Resume(params, Checkpoint(earlier.keep(), {})),
         GrabTo(3, (1.0, 0.0, 0.0)), GrabTo(3, (0.0, 1.0, 0.0)), Place("root", (0.2, 0.0, 0.0)),
     )  # fmt: skip
     count = 0
     for rest in itertools.product(commands, repeat=2):
-        sequence = (commands[first], *rest)
-        several = merged(sequence, Record(params, 1))
+        sequence = posted(params, (commands[first], *rest))
+        several = merged(sequence)
         if len(several) == len(sequence):
             continue
         ends = []

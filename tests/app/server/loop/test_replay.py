@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.messages import LastFrame, Pause, Play, Reset, StepOnce, Take
+from app.messages import Change, LastFrame, Pause, Play, Reset, StepOnce
 from app.render.cameras import fit_cameras
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import PRESETS, RopeParams
@@ -97,7 +97,7 @@ def test_a_reset_ends_the_replay_and_other_forces_halt_at_the_last_good_state() 
     assert loop.run.running
     loop = diverged()
     params = check_record(RopeParams, {**PRESETS["Euler explodes"], "stiffness": 10.0})
-    loop.commands.put(Take(params))
+    loop.commands.put(Change(params, "forces"))
     loop.tick(FRAME_INTERVAL)
     assert loop.run.replay is None
     assert "became unstable" in loop.run.halted

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.messages import Checkpoint, Pause, Play, Reset, StepOnce, Take, TogglePlay
+from app.messages import Begin, Change, Checkpoint, Pause, Play, Reset, Resume, StepOnce, TogglePlay
 from app.scenes import race
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.race.parameters import RaceParams
@@ -122,7 +122,7 @@ def test_what_begins_one_run_again_begins_all():
     group = of_steps(*STEPS)
     group.run(1.0)
     changed = check_record(SCENE.params, {"time_step": 1 / 60, "length": 1.0, "integrator": "rk4"})
-    group.loops[1].commands.put(Take(changed, start=True))
+    group.loops[1].commands.put(Begin(changed))
     group.run(0.2)
     assert 0.0 < max(group.times) < 0.3
     group.run(0.5)
@@ -133,7 +133,7 @@ def test_a_change_that_begins_one_run_again_begins_all():
     ropes = race.SCENE.make(RaceParams(ropes=2))
     group = Group(rope(), ropes)
     group.run(0.5)
-    group.loops[1].commands.put(Take(RaceParams(ropes=1)))
+    group.loops[1].commands.put(Change(RaceParams(ropes=1), "start"))
     group.run(0.2)
     assert len(ropes.frame().ropes) == 1
     assert 0.0 < max(group.times) < 0.3
@@ -160,7 +160,7 @@ def test_a_run_that_goes_on_from_an_earlier_moment_advances_as_the_others_do():
     state = Checkpoint(first.scene.keep(), {})
     kept_at = first.scene.time
     group.run(1.0)
-    first.commands.put(Take(first.scene.params, state=state))
+    first.commands.put(Resume(first.scene.params, state))
     group.run(FRAME_INTERVAL)
     gap = group.times[1] - group.times[0]
     assert group.times[0] == pytest.approx(kept_at, abs=0.05)

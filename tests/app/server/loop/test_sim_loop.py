@@ -14,15 +14,17 @@ import pytest
 from app.messages import (
     Advance,
     Ask,
+    Begin,
+    Change,
     Checkpoint,
     Command,
     Halt,
     Pause,
     Play,
     Reset,
+    Resume,
     StepOnce,
     StudentAnswer,
-    Take,
     TogglePlay,
     where_not_finite,
 )
@@ -31,7 +33,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop.clock import MAX_FRAME_INTERVAL, MAX_LONG_FRAME, PATIENCE, SOLVE_SHARE, FixedStep
 from app.server.loop.run import HURRY_INTERVAL
 from app.server.loop.sim_loop import IDLE_INTERVAL, SimLoop
-from sim.parameters import parameter
+from sim.parameters import effect_of_change, parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
 
@@ -208,7 +210,7 @@ def test_a_slider_reaches_the_simulation_in_the_next_frame() -> None:
     loop, scene = make()
     loop.tick(FRAME_INTERVAL)
     for stiffness in np.linspace(2.0, 7.0, 200):  # as many as a mouse sends in one frame, and more
-        loop.commands.put(Take(Params(stiffness=stiffness)))
+        loop.commands.put(Change(Params(stiffness=stiffness), "forces"))
     loop.tick(FRAME_INTERVAL)
     assert scene.seen[-1] == 7.0
     assert scene.changes == 1
@@ -265,7 +267,7 @@ def test_parameters_that_the_scene_cannot_take_pause_the_run_and_are_tried_once(
     loop, scene = make()
     loop.tick(FRAME_INTERVAL)
     values, scene.fails = Params(stiffness=3.0), ValueError("no such net")
-    loop.commands.put(Take(values))
+    loop.commands.put(Change(values, "forces"))
     for _ in range(5):
         loop.tick(FRAME_INTERVAL)
     assert "no such net" in loop.latest.status.halted
@@ -283,7 +285,7 @@ def test_a_step_that_became_a_thousand_times_as_expensive_does_not_hold_up_the_f
     for _ in range(10):
         loop.tick(FRAME_INTERVAL)
     assert loop.run.counts["steps"] > 10_000
-    loop.commands.put(Take(Params(speed=8.0, stiffness=2.0)))
+    loop.commands.put(Change(Params(speed=8.0, stiffness=2.0), "forces"))
     scene.cost = 1e-4
     before = scene.clock.now
     loop.tick(FRAME_INTERVAL)
@@ -384,7 +386,7 @@ def test_other_parameters_end_a_long_sleep() -> None:
     sleep.start()
     sleep.join(0.2)
     assert sleep.is_alive()
-    loop.commands.put(Take(Params(stiffness=3.0)))
+    loop.commands.put(Change(Params(stiffness=3.0), "forces"))
     sleep.join(10.0)
     stop.set()
     assert not sleep.is_alive()
@@ -403,7 +405,8 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
     assert sleep.is_alive()
     stop.set()
     sleep.join(10.0)
-    loop.run.running, serial = False, loop.latest.serial
+    loop.handle(Pause())
+    serial = loop.latest.serial
     loop.tick(0.0)
     assert loop.latest.serial == serial + 1
 
@@ -464,10 +467,11 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
 def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters_before_it(seconds: float) -> None:
     loop, scene = make()
     stop = threading.Event()
-    threading.Timer(0.1, lambda: [loop.commands.put(c) for c in (Take(Params(stiffness=3.0)), Reset())]).start()
+    both = [Change(Params(stiffness=3.0), "forces"), Reset()]
+    threading.Timer(0.1, lambda: [loop.commands.put(command) for command in both]).start()
     loop.wait(1000.0 * seconds, stop)
     loop.take_in()  # the second may have come after the sleep
-    assert loop.waiting == [Take(Params(stiffness=3.0)), Reset()]
+    assert loop.waiting == both
     assert scene.resets == 0
     reset, seen = scene.reset, []
     scene.reset = lambda: seen.append(scene.params.stiffness) or reset()
@@ -483,7 +487,7 @@ def test_a_change_of_look_touches_neither_forces_nor_start() -> None:
     loop.tick(FRAME_INTERVAL)
 
     def give(params: Params) -> None:
-        loop.commands.put(Take(params))
+        loop.commands.put(Change(params, effect_of_change(scene.params, params) or "look"))
         loop.tick(FRAME_INTERVAL)
         assert scene.params == params
 
@@ -499,9 +503,9 @@ def test_a_preset_starts_from_exactly_its_record_and_what_is_changed_after_it_fo
     loop, scene = make(paused=True)
     loop.tick(FRAME_INTERVAL)
     preset = Params(stiffness=5.0, points=7)
-    loop.commands.put(Take(Params(stiffness=4.0)))  # of no more interest
-    loop.commands.put(Take(preset, start=True))
-    loop.commands.put(Take(Params(stiffness=6.0, points=7)))  # changed by hand before the next frame
+    loop.commands.put(Change(Params(stiffness=4.0), "forces"))  # of no more interest
+    loop.commands.put(Begin(preset))
+    loop.commands.put(Change(Params(stiffness=6.0, points=7), "forces"))  # changed by hand before the next frame
     loop.tick(FRAME_INTERVAL)
     assert scene.starts == [preset]
     assert (scene.params.stiffness, scene.changes) == (6.0, 1)
@@ -522,7 +526,7 @@ def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_st
     assert loop.latest.state is None
     time, state = states[3]
     run = loop.latest.status.run
-    loop.commands.put(Take(Params(stiffness=3.0), state=state))
+    loop.commands.put(Resume(Params(stiffness=3.0), state))
     loop.tick(0.0)
     assert (scene.time, scene.params.stiffness, scene.resets) == (time, 3.0, 0)
     assert loop.run.running
@@ -620,8 +624,8 @@ def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
     loop, scene = make()
     for command, kind, words in (
         (Reset(), RuntimeError, "was reset"),
-        (Take(Params(), start=True), RuntimeError, "was reset"),
-        (Take(Params(), state=Checkpoint(0.0, {})), RuntimeError, "another moment"),
+        (Begin(Params()), RuntimeError, "was reset"),
+        (Resume(Params(), Checkpoint(0.0, {})), RuntimeError, "another moment"),
         (Advance(1.0, Future()), RuntimeError, "another program"),
         (Halt("no more"), DivergenceError, "no more"),
     ):

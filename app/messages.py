@@ -160,6 +160,15 @@ class GrabTo(NamedTuple):
     client: int = 0  # the browser that drags
 
 
+class Pull(NamedTuple):
+    """A pull of a body, as drawn."""
+
+    place: Vector  # [m] of the body
+    target: Vector  # [m]
+    load: float  # the force over the largest one, or the way over the longest one, 0 to 1
+    limit: str  # words for what limits it
+
+
 class Release(NamedTuple):
     """Release everything that a browser has grabbed."""
 

@@ -7,6 +7,7 @@ import math
 
 NO_NUMBER = "–"
 THOUSANDS = "\u202f"  # narrow no-break space
+KILO_FROM = 1e4  # [N] from which a force is given in kN
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MIN_PLAIN, MAX_PLAIN = 1e-3, 1e6  # numbers outside are written with a power of ten
 LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))  # [m]
@@ -98,6 +99,12 @@ def with_unit(value: float, unit: str, digits: int = 3) -> str:
     if unit in EASY and 0.0 < abs(value) < MAX_SMALL:
         return EASY[unit](value, digits)
     return number(value, digits) if unit in ("", "1") else f"{number(value, digits)}\u00a0{unit}"
+
+
+def largest_force(force: float) -> str:
+    """Words for the largest force [N] with which the mouse pulls."""
+    with_its_unit = f"{number(1e-3 * force)} kN" if force >= KILO_FROM else f"{number(force)} N"
+    return f"{with_its_unit}: the largest mouse force"
 
 
 def short_step(step: float) -> str:

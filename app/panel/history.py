@@ -40,8 +40,8 @@ class SceneRequest(NamedTuple):
 class History:
     """The settings before each act of a person, as a stack, and the numbers of the acts.
 
-    An act is everything that a person changes at once. Changes of one number are one act while a slider is held, and if
-    they follow each other soon.
+    An act is everything that a person changes at once. A browser's changes of one number are one act while it holds a
+    slider, and if they follow each other soon.
     """
 
     def __init__(self) -> None:
@@ -50,17 +50,26 @@ class History:
         self.settings: collections.deque[EarlierSettings] = collections.deque(maxlen=MAX_SETTINGS)
         self.undone: list[EarlierSettings] = []  # the next one to be redone is the last
         self.number, self.changed_at = "", 0.0  # name of the last number changed, and the time [s]
+        self.client: int | None = None  # the browser that changed it
         self.hands: set[int] = set()  # browsers in which a slider is held
 
-    def note(self, before: EarlierSettings, *, number: str = "", begins: bool = False, runs: bool = False) -> int:
+    def note(
+        self,
+        before: EarlierSettings,
+        *,
+        number: str = "",
+        client: int | None = None,
+        begins: bool = False,
+        runs: bool = False,
+    ) -> int:
         """Keep the settings before a change. number: name of the number that changes, alone.
 
-        begins: it begins another run. runs: and starts the clock. Returns the number of the act that begins the next
-        run.
+        client: the browser that changes it, if it is known. begins: it begins another run. runs: and starts the clock.
+        Returns the number of the act that begins the next run.
         """
-        goes_on = number != "" and number == self.number
-        goes_on = goes_on and (bool(self.hands) or time.monotonic() - self.changed_at <= SAME_CHANGE)
-        self.number, self.changed_at = number, time.monotonic()
+        goes_on = number != "" and (number, client) == (self.number, self.client)
+        goes_on = goes_on and (client in self.hands or time.monotonic() - self.changed_at <= SAME_CHANGE)
+        self.number, self.client, self.changed_at = number, client, time.monotonic()
         if not goes_on:
             self.undone.clear()
             self.settings.append(before._replace(act=self.act, runs=self.runs))
@@ -69,9 +78,10 @@ class History:
         return self.act
 
     def press(self, client: int) -> None:
-        """Note that a browser holds a slider: later changes are another act."""
+        """Note that a browser holds a slider: its later changes are another act."""
         self.hands.add(client)
-        self.number = ""
+        if client == self.client:
+            self.number = ""
 
     def release(self, client: int) -> None:
         """Note that a browser has released its slider, or has left. Its last messages may still arrive."""

@@ -134,11 +134,11 @@ class SceneSettings:
 
     # ----- changes
 
-    def set(self, name: str, value: object) -> None:
-        """Set one parameter, bounded to its range."""
-        self.set_all({name: value})
+    def set(self, name: str, value: object, client: int | None = None) -> None:
+        """Set one parameter, bounded to its range. client: the browser in which a person did."""
+        self.set_all({name: value}, client)
 
-    def set_all(self, values: Mapping[str, object], *, restarts: bool = False) -> None:
+    def set_all(self, values: Mapping[str, object], client: int | None = None, *, restarts: bool = False) -> None:
         """Set parameters, each bounded to its range: one change. restarts: restart the scene in any case."""
         known = parameters_of(self.params)
         good = {name: clamp_value(known[name], value) for name, value in values.items()}
@@ -150,7 +150,7 @@ class SceneSettings:
         effect: Effect = "start" if restarts else self.effect_of(params)
         words = in_words(changed[0]) if len(changed) == 1 else "new values" if changed else "restart"
         number = changed[0] if is_number and not restarts else ""
-        act = self.history.note(self.now(words), number=number, begins=effect == "start")
+        act = self.history.note(self.now(words), number=number, client=client, begins=effect == "start")
         self.take(Change(params, effect, act), self.loaded)
 
     def toggle_plots(self) -> None:

@@ -127,17 +127,17 @@ class Control:
             return
         sent: object = event.target.value
         if self.parameter.choices:
-            self.set(self.parameter.choice_of(str(sent)))
+            self.set(self.parameter.choice_of(str(sent)), event.client_id)
             return
         if self.slider is None:
-            self.set(sent)
+            self.set(sent, event.client_id)
             return
         try:
             value = parse_value(self.name, self.parameter, str(sent))
         except ValueError as reason:
             self.refuse(str(reason))
         else:
-            self.set(value)
+            self.set(value, event.client_id)
 
     async def on_slider(self, event: ViserEvent) -> None:
         """Take a browser's position of the slider."""
@@ -146,11 +146,11 @@ class Control:
         position = float(event.target.value[0])
         # If the slider shows the present value, rounded to its step, the value stays exact.
         if abs(self.scale.position(self.value) - position) > 0.5 * self.scale.step:
-            self.set(self.scale.value(position))
+            self.set(self.scale.value(position), event.client_id)
 
-    def set(self, value: object) -> None:
-        """Pass a value to the settings, and show the accepted one."""
-        self.settings.set(self.name, value)
+    def set(self, value: object, client: int | None = None) -> None:
+        """Pass a value to the settings, and show the accepted one. client: the browser that sent it."""
+        self.settings.set(self.name, value, client)
         self.show_value()
 
     def refuse(self, reason: str) -> None:

@@ -77,10 +77,15 @@ class SwitchNotice:
     """The line in one panel."""
 
     def __init__(
-        self, gui: viser.GuiApi, scene: str, changes: SceneSwitches, restore: Callable[[SceneSwitch], None]
+        self,
+        gui: viser.GuiApi,
+        scene: str,
+        changes: SceneSwitches,
+        restore: Callable[[SceneSwitch], None],
+        is_undone: Callable[[SceneSwitch], bool],
     ) -> None:
-        """Add it to the container that is open. restore: undoes a change."""
-        self.scene, self.changes, self.restore = scene, changes, restore
+        """Add it to the container that is open. restore: undoes a change. is_undone: a person has done so otherwise."""
+        self.scene, self.changes, self.restore, self.is_undone = scene, changes, restore, is_undone
         self.text = gui.add_html("", visible=False)
         self.undo = gui.add_button_group("", (UNDO,), visible=False)
         self.undo.on_click(self.on_undo)
@@ -88,6 +93,8 @@ class SwitchNotice:
     def draw(self) -> None:
         """Show the change, or none; on the viewer's thread."""
         change = self.changes.shown_in(self.scene)
+        if change is not None and self.is_undone(change):
+            change = self.changes.latest = None
         if change is not None:
             self.text.content = change.words()
         self.text.visible = change is not None

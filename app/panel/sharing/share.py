@@ -76,7 +76,7 @@ class Share:
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with head:
-            self.notice = SwitchNotice(gui, settings.kind.name, changes, self.restore)
+            self.notice = SwitchNotice(gui, settings.kind.name, changes, self.restore, self.is_undone)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -182,6 +182,10 @@ class Share:
         if isinstance(change.subject, str) and self.beside is not None:
             self.beside.end()
         self.settings.show_setup(change.before, None)
+
+    def is_undone(self, change: SceneSwitch) -> bool:
+        """True if the former set-up is shown again."""
+        return isinstance(change.subject, Setup) and self.settings.shows(change.before)
 
     def read(self, text: str) -> Setup | str:
         """Content of a page's message: a set-up, or the name of a comparison. Raises ValueError if it is refused."""

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.formats.formatting import number
-from app.messages import Command, GrabTo, Release, finite_vector
+from app.messages import Command, GrabTo, Pull, Release, finite_vector
 
 GRAB_COLOUR, LIMIT_COLOUR = (255, 90, 60), (150, 0, 60)
 
@@ -52,20 +51,27 @@ class GrabLine:
             visible=False,
         )
 
-    def show(self, ends: Any, load: float = 0.4, limit: float = 0.0) -> None:
+    def show(self, ends: Any, load: float = 0.4, limit: str = "") -> None:
         """ends: (2, 3) [m], None while nothing is grabbed. load: fraction of the largest force of the grab, 0 to 1.
 
-        limit: that force [N].
+        limit: words for what limits it.
         """
-        self.show_limit(ends, limit if ends is not None and load >= 1.0 else 0.0)
+        self.show_limit(ends, limit if ends is not None and load >= 1.0 else "")
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)
             self.line.thickness = 2.0 + 5.0 * load
 
-    def show_limit(self, ends: Any, force: float) -> None:
-        """Show that the force [N] is the largest one; 0: it is smaller."""
-        is_at_limit = force > 0.0
+    def show_pull(self, pull: Pull | None) -> None:
+        """pull: of a body; None while nothing is grabbed."""
+        if pull is None:
+            self.show(None)
+        else:
+            self.show((pull.place, pull.target), pull.load, pull.limit)
+
+    def show_limit(self, ends: Any, words: str) -> None:
+        """Show what limits the pull; "": it is below its limit."""
+        is_at_limit = words != ""
         if is_at_limit is not self.is_at_limit:
             self.is_at_limit = is_at_limit
             self.line.colors = np.array(LIMIT_COLOUR if is_at_limit else GRAB_COLOUR, np.uint8)
@@ -73,7 +79,6 @@ class GrabLine:
                 self.words = self.server.scene.add_label(f"{self.name}/limit", "", anchor="bottom-center")
             self.words.visible = is_at_limit
         if is_at_limit and self.words is not None:
-            text = f"{number(force)} N: the largest mouse force"
-            if self.words.text != text:
-                self.words.text = text
+            if self.words.text != words:
+                self.words.text = words
             self.words.position = np.asarray(ends[1], float)

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Place, SceneCommand, Vector, vector_of
+from app.formats.formatting import largest_force
+from app.messages import Place, Pull, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import at_most, body_of, build, held, hull_of, line_types, rows_of, sea_of
 from app.scenes.mooring.attachments import Attachments
 from app.scenes.mooring.line_scene import LineScene
@@ -111,17 +112,25 @@ class MooringScene(LineScene):
         """Loads of waves and current, and the mouse's pull."""
         found = super().driven()
         if self.grabbed is not None:
-            found["steady"] = self.system.kernel_view(self.step).steady + self.grab_force()
+            force = np.concatenate((at_most(self.largest_pull, self.wanted_pull(self.grabbed[1])), np.zeros(3)))
+            found["steady"] = self.system.kernel_view(self.step).steady + force
         return found
 
-    def grab_force(self) -> NDArray[np.float64]:
-        """(1, 6) [N, N m] critically damped, on the body."""
-        assert self.grabbed is not None
+    def wanted_pull(self, target: Vector) -> NDArray[np.float64]:
+        """(3,) [N] critically damped, on the body, without a limit. target: [m]."""
         mass = float(self.body.mass[0, 0])
         v = self.state.v[:, self.system.node_count]
-        force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
-        limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.water.gravity
-        return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
+        return mass * (GRAB_RATE**2 * (np.array(target) - self.body_place()) - 2.0 * GRAB_RATE * v)
+
+    @property
+    def largest_pull(self) -> float:
+        """Largest force [N] of the mouse."""
+        return self.params.pull * self.params.density * hull_of(self.params).volume * self.system.water.gravity
+
+    def pull_of_body(self, target: Vector) -> Pull:
+        """The pull of the body towards a target [m]."""
+        load = float(np.linalg.norm(self.wanted_pull(target))) / self.largest_pull
+        return Pull(vector_of(self.body_place()), target, min(1.0, load), largest_force(self.largest_pull))
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Vector
+from app.messages import Pull, Vector
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.start_check import Fault
 from sim.springs.stability import Gauge
@@ -30,7 +30,7 @@ class MooringFrame(NamedTuple):
     anchors: NDArray[np.float32]  # (a, 3) [m]
     fairleads: NDArray[np.float32]  # (f, 3) [m], and other points that move
     uplift: NDArray[np.bool_]  # (a,) whether an anchor is pulled upwards
-    grab: Vector | None  # [m] where the mouse pulls the body to
+    grab: Pull | None  # the pull of the body
 
 
 class EndStatistics(NamedTuple):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, PlotRow, Pull, Release, RestartStatistics, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.checkpoints import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
@@ -134,6 +134,10 @@ class LineScene(abc.ABC):
     @abc.abstractmethod
     def body_place(self) -> NDArray[np.float64]:
         """(3,) [m] of the middle of the body or vessel."""
+
+    @abc.abstractmethod
+    def pull_of_body(self, target: Vector) -> Pull:
+        """The pull of the body or vessel towards a target [m]."""
 
     @abc.abstractmethod
     def rotation(self) -> NDArray[np.float64]:
@@ -275,7 +279,7 @@ class LineScene(abc.ABC):
             anchors=self.points[:, 0].astype(np.float32),
             fairleads=self.points[:, -1].astype(np.float32),
             uplift=self.tensions.uplift > 0.0,
-            grab=None if self.grabbed is None else self.grabbed[1],
+            grab=None if self.grabbed is None else self.pull_of_body(self.grabbed[1]),
         )
         self.last_moments.add(self.time, frame, frame.points)
         return frame

@@ -101,7 +101,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         for part in self.drawn:
             part.show(frame)
         self.show_handles(frame)
-        self.grab.show(None if frame.grab is None else (tuple(frame.body.tolist()), frame.grab))
+        self.grab.show_pull(frame.grab)
 
     def show_handles(self, frame: MooringFrame) -> None:
         """The arrows of anchors and fairleads."""

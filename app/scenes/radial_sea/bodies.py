@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.formats.formatting import largest_force
+from app.messages import Pull, vector_of
 from app.scenes.radial_sea.meters import BodyMeters
 from app.scenes.radial_sea.moorings import BED_DEPTH, BodyMoorings
 from sim.floating import (
@@ -231,8 +233,18 @@ class FloatingBodies:
             return
         if index not in held:
             self.release(client)
+            self.fleet.pull_force[index] = 0.0
         self.pulls[index] = BodyPull(client, target)
         pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * GRAVITY * float(self.fleet.mass[index]))
+
+    def drawn_pulls(self) -> tuple[Pull, ...]:
+        """The pulls of all grabbed bodies."""
+        fleet = self.fleet
+        return tuple(
+            Pull(vector_of(fleet.position[i]), one.target, float(fleet.pull_force[i]) / limit, largest_force(limit))
+            for i, one in self.pulls.items()
+            if (limit := float(fleet.pull_limit[i]))
+        )
 
     def release(self, client: int = 0) -> None:
         """Release the body that a browser holds; it keeps its velocity."""

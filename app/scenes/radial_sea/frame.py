@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Vector
+from app.messages import Pull
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
@@ -46,7 +46,7 @@ class RadialFrame(NamedTuple):
     stains: NDArray[np.float32]  # (bodies,) [m] above the lowest point of each to which oil has wetted it
     fairleads: NDArray[np.float32]  # (bodies, 3) [m] of the mooring lines; none where they are taken off
     anchors: NDArray[np.float64]  # (bodies, 4, 3) [m]
-    grabs: tuple[tuple[Vector, Vector], ...]  # from each grabbed body to where it is pulled [m]
+    grabs: tuple[Pull, ...]  # the pulls of bodies
     # (3, n) [m]; (4, n) heat, age over life, radius of the plume [m], age over the longest life
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None
     jet: JetParcels | None  # in the air

@@ -339,7 +339,6 @@ class RadialSeaScene:
         self.set_grid()
         drawing = self.drawing
         drawing.update(self)
-        grabbed = [(bodies.fleet.position[i].tolist(), one.target) for i, one in bodies.pulls.items()]
         fire, jet = self.well_blowout.fire, self.well_blowout.jet
         return RadialFrame(
             params=p,
@@ -357,7 +356,7 @@ class RadialSeaScene:
             stains=bodies.meters.stain.astype(np.float32),
             fairleads=bodies.moorings.fairleads(bodies.fleet, moored=p.mooring),
             anchors=bodies.moorings.lines.anchors,
-            grabs=tuple(((x, y, z), target) for (x, y, z), target in grabbed),
+            grabs=bodies.drawn_pulls(),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),
             column=self.column if self.student is None else self.student.drawn(self.column),

@@ -171,7 +171,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         while len(self.grab_lines) < len(frame.grabs):
             self.grab_lines.append(GrabLine(self.server, f"/pull{len(self.grab_lines)}"))
         for i, line in enumerate(self.grab_lines):
-            line.show(frame.grabs[i] if i < len(frame.grabs) else None)
+            line.show_pull(frame.grabs[i] if i < len(frame.grabs) else None)
 
     def move_camera(self, frame: RadialFrame) -> None:
         """Move to the followed object when it is chosen, then along with it; report the camera's place to the scene."""

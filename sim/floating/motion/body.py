@@ -208,6 +208,7 @@ class Fleet(NamedTuple):
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
     pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 for none
+    pull_force: np.ndarray  # (n,) [N] size of the pull at the last step with one
     mooring: np.ndarray  # (n, 6) [N, N m] force and moment of lines about the centre of mass, in world axes
     hull: np.ndarray  # (n,) int, index in hulls
     density: np.ndarray  # (n,) [kg/m3]
@@ -259,6 +260,7 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),
         pull_limit=np.zeros(n),
+        pull_force=np.zeros(n),
         mooring=np.zeros((n, 6)),
         hull=np.array([number[id(hull)] for hull in own], dtype=np.int64),
         density=np.array(densities, dtype=float),

@@ -105,6 +105,7 @@ def add_pull(fleet, i, h, rate, factor, heading, place, change, six):
             break
         more = (size / limit - 1.0) * size * size / dot(impulse, solve_three(K, impulse))
         kx, ky, kz = (kx[0] + more, kx[1], kx[2]), (ky[0], ky[1] + more, ky[2]), (kz[0], kz[1], kz[2] + more)
+    fleet.pull_force[i] = min(size, limit) / h
     pushed(factor, scaled(limit / size if size > limit else 1.0, impulse), place, change)
     for c in range(6):
         six[c] += change[c]

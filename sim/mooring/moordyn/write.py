@@ -32,17 +32,17 @@ def write_moordyn(system: System, path: str | Path) -> None:
     number = {point.id: i for i, point in enumerate(system.points, 1)}
     for point in system.points:
         numbers = (*point.position, point.mass, point.volume, point.drag_area, point.added_mass)
-        rows.append(" ".join([str(number[point.id]), point.kind.capitalize(), *(f"{one:.17g}" for one in numbers)]))
+        rows.append(" ".join([str(number[point.id]), point.kind.capitalize(), *map(shortest, numbers)]))
     rows += ["---------------------- LINES ----------------------",
              "ID LineType AttachA AttachB UnstrLen NumSegs Outputs", "(#) (name) (#) (#) (m) (-) (-)"]  # fmt: skip
     for i, line in enumerate(system.lines, 1):
         ends = f"{number[line.start]} {number[line.end]}"
-        rows.append(f"{i} {line.type.name} {ends} {line.length:.17g} {line.segments} -")
+        rows.append(f"{i} {line.type.name} {ends} {shortest(line.length)} {line.segments} -")
     rows += ["---------------------- OPTIONS ----------------------"]
     water = system.water
     options = {"g": water.gravity, "rho": water.density, "WtrDpth": water.depth, "kBot": system.bed_stiffness,
                "cBot": system.bed_damping, "FrictionCoefficient": system.friction}  # fmt: skip
-    rows += [f"{value:.17g} {name}" for name, value in options.items()]
+    rows += [f"{shortest(value)} {name}" for name, value in options.items()]
     rows += ["---------------------- need this line ----------------------", ""]
     write_text(path, rows)
 
@@ -66,14 +66,19 @@ def check_writable(system: System) -> None:
 
 def type_row(kind: LineType, path: Path) -> str:
     """The row of a line type; its table of strain and tension is written beside the file."""
-    stiffness = f"{kind.stiffness:.17g}"
+    stiffness = shortest(kind.stiffness)
     if kind.curve:
         stiffness = CURVE_FILE.format(stem=path.stem, name=kind.name)
-        rows = [f"{strain:.17g} {tension:.17g}" for strain, tension in kind.curve]
+        rows = [f"{shortest(strain)} {shortest(tension)}" for strain, tension in kind.curve]
         write_text(path.parent / stiffness, [kind.name, "Strain Tension", "(-) (N)", *rows])
     coefficients = kind.drag_across, kind.added_across, kind.drag_along, kind.added_along
-    numbers = (f"{one:.17g}" for one in (kind.damping, kind.bending, *coefficients))
-    return " ".join([kind.name, f"{kind.diameter:.17g}", f"{kind.mass:.17g}", stiffness, *numbers])
+    numbers = map(shortest, (kind.damping, kind.bending, *coefficients))
+    return " ".join([kind.name, shortest(kind.diameter), shortest(kind.mass), stiffness, *numbers])
+
+
+def shortest(value: float) -> str:
+    """The shortest text that is read as the same number."""
+    return repr(float(value)).removesuffix(".0")
 
 
 def write_text(path: Path, rows: list[str]) -> None:

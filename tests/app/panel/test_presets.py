@@ -100,28 +100,47 @@ def test_a_drag_is_one_change_however_slow_it_is(monkeypatch: pytest.MonkeyPatch
         history.press(client)
         for wait in waits:
             now += wait
-            history.note(settings, number="mass")
+            history.note(settings, number="mass", client=client)
         history.release(client)
 
     drag([0.1, 1.5, 30.0], 1)
-    history.note(settings, number="mass")  # what the page sent last comes after the release
+    history.note(settings, number="mass", client=1)  # what the page sent last comes after the release
     assert len(history.settings) == 1
     drag([0.2], 1)
     assert len(history.settings) == 2
     now += 1.5
-    history.note(settings, number="mass")  # an arrow key
+    history.note(settings, number="mass", client=1)  # an arrow key
     now += 0.5
-    history.note(settings, number="mass")
+    history.note(settings, number="mass", client=1)
     assert len(history.settings) == 3
     history.press(2)
     history.release(3)
     now += 5.0
-    history.note(settings, number="mass")
+    history.note(settings, number="mass", client=2)
     now += 5.0
-    history.note(settings, number="mass")
+    history.note(settings, number="mass", client=2)
     assert len(history.settings) == 4
     now += 5.0
     history.release(2)  # or it has left
     now += 5.0
-    history.note(settings, number="mass")
+    history.note(settings, number="mass", client=2)
     assert len(history.settings) == 5
+
+
+def test_changes_of_two_browsers_are_two_acts(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr("app.panel.history.time.monotonic", lambda: now)
+    history, settings = History(), EarlierSettings("rope", RopeParams(), "a")
+    for client in (1, 2, 1):  # of the same number, at once
+        history.note(settings, number="mass", client=client)
+    assert len(history.settings) == 3
+    history.press(1)
+    for count in (4, 5):  # another browser types meanwhile
+        now += 5.0
+        history.note(settings, number="mass", client=2)
+        assert len(history.settings) == count
+    history.note(settings, number="mass", client=1)
+    history.press(2)  # and touches a slider
+    now += 5.0
+    history.note(settings, number="mass", client=1)
+    assert len(history.settings) == 6

@@ -53,7 +53,7 @@ def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: py
 def test_a_change_is_undone_once() -> None:
     undone: list[SceneSwitch] = []
     changes, gui = SceneSwitches(), Mock()
-    notice = SwitchNotice(gui, "rope", changes, undone.append)
+    notice = SwitchNotice(gui, "rope", changes, undone.append, lambda change: False)
     rope = make_setup(scene_named("rope"))
     changes.latest = change = SceneSwitch("page", "rope", rope, rope)
     for _ in range(2):
@@ -86,7 +86,10 @@ def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pyte
     coroutines.run(follow_links())
 
 
-def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> None:
+def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    # No line goes because its time is over.
+    monkeypatch.setattr("app.panel.sharing.scene_switches.time", types.SimpleNamespace(monotonic=lambda: 100.0))
+
     async def undo_links() -> None:
         async with visitor(lab) as first, visitor(lab) as second:
             await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9&stiffness=500")
@@ -103,6 +106,10 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
             await follow(first, "?scene=rope&points=13")
             await undo(second)
             await until(lambda: lab.settings.params == before and not shown(lab))
+            await follow(first, "?scene=rope&points=14")
+            await second.send(lab.panel.head.buttons, "Undo")  # of the last act, which is the link
+            await until(lambda: lab.settings.params == before and not shown(lab))
+            assert lab.changes.latest is None
 
     coroutines.run(undo_links())
 

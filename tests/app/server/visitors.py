@@ -33,7 +33,10 @@ class Visitor:
 
     async def send(self, handle: Any, value: object) -> None:
         """Send the value of a control."""
-        message = {"type": "GuiUpdateMessage", "uuid": handle._impl.uuid, "updates": {"value": value}}
+        await self.say({"type": "GuiUpdateMessage", "uuid": handle._impl.uuid, "updates": {"value": value}})
+
+    async def say(self, message: dict[str, Any]) -> None:
+        """Send a message."""
         await self.socket.send(msgspec.msgpack.encode(message))
 
 

@@ -265,3 +265,47 @@ def test_a_scene_is_everybodys_and_leaves_to_each_browser_what_is_its_own(two: t
     finally:
         switch("dark")(acts)
         set_quality(acts, "automatic")
+
+
+@pytest.mark.long
+def test_acts_of_two_pages_are_undone_in_either_page(two: tuple[Viewer, Tab, Tab]) -> None:
+    viewer, acts, other = two
+    viewer.settings.history.settings.clear()  # of the tests before
+    viewer.settings.tell()
+    rope = lambda: acts.pixel(viewer.scene.state.x[:, 0, 6])  # type: ignore[attr-defined]  # noqa: E731
+
+    def drag(tab: Tab) -> None:
+        tab.hold(rope, (40, -20), lambda: viewer.scene.handles.grab.grabbed is not None)  # type: ignore[attr-defined]
+        tab.release()
+
+    def hint(tab: Tab) -> str:
+        return tab.page.locator('[data-springtide-icon="Undo"]').get_attribute("title") or ""
+
+    def values(tab: Tab) -> dict[str, Any]:
+        found = shared(tab)
+        return {name: found[name] for name in ("stiffness", "floor", "preset", "charts")}
+
+    done: list[dict[str, Any]] = []
+    for act, words in (
+        (type_stiffness, "Stiffness, back to 800"),
+        (drag, "a pull"),
+        (tick_floor, "Floor, back to"),
+        (lambda tab: choose(tab, "Preset", OTHER_PRESET), f"preset {OTHER_PRESET}, back to"),
+        (press("Plots"), "new values"),
+    ):
+        done.append(values(acts))
+        act(acts)
+        for tab in (acts, other):
+            tab.wait(lambda tab=tab, words=words: hint(tab).startswith(f"Undo: {words}"), 20)
+        other.wait(lambda acts=acts, other=other: values(other) == values(acts), 20)
+        viewer.loop.commands.put(Pause())
+        acts, other = other, acts
+    for number, before in enumerate(reversed(done)):
+        (key("Control+z") if number % 2 else press("Undo"))(acts)
+        viewer.loop.commands.put(Pause())
+        for tab in (acts, other):
+            tab.wait(lambda tab=tab, before=before: values(tab) == before, 20)
+        acts, other = other, acts
+    for tab in (acts, other):
+        tab.wait(lambda tab=tab: hint(tab).startswith("There is nothing to undo. Redo: "), 20)
+        assert tab.page.locator('[data-springtide-icon="Undo"]').is_disabled()

@@ -71,6 +71,30 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     tab.wait(lambda: not tab.page.locator("#springtide-time output").is_visible(), 10)
 
 
+def test_the_keys_of_the_focused_line_do_what_its_hint_says(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    recorder, line, keys = lab.panel.recorder, tab.page.locator("#springtide-time input"), tab.page.keyboard
+    lab.loop.commands.put(Play())
+    tab.wait(lambda: recorder.span()[1] - recorder.span()[0] > 8.0 and line.is_enabled(), 60)
+    hint = line.get_attribute("title") or ""
+    assert hint.endswith("Drag or press an arrow key to look back; Space plays the recording")
+    line.focus()
+    keys.press("ArrowLeft")
+    tab.wait(lambda: recorder.position == len(recorder.frames) - 2 and not lab.loop.run.running, 20)
+    keys.press("Home")
+    tab.wait(lambda: recorder.position == 0, 20)
+    for is_playing in (True, False):
+        keys.press("Space")
+        tab.wait(lambda is_playing=is_playing: recorder.playing is is_playing, 20)
+        tab.page.wait_for_timeout(500)  # what else the key does would be done
+        assert not lab.loop.run.running
+    assert 0 < recorder.position < len(recorder.frames) - 1
+    line.blur()
+    keys.press("Space")  # elsewhere the key is the lab's
+    tab.wait(lambda: lab.loop.run.running, 20)
+    recorder.show_present()
+
+
 def test_the_bar_is_inside_the_window_at_every_size_in_any_order(shown: tuple[Viewer, Tab]) -> None:
     """A window of 640 x 400 is one of 1280 x 800 at 200 %: there the panel covers more than half of it."""
     lab, tab = shown

@@ -82,7 +82,8 @@ function update() {
   button("continue").title = state.resumable ? "Resume from here; everything recorded later is discarded"
     : "Can't resume from this far back; pick a later moment";
   line.disabled = !(state.high > state.low);
-  line.title = `Recorded: ${(state.high - state.low).toFixed(0)} s, ${state.size}. Drag to look back`;
+  line.title = `Recorded: ${(state.high - state.low).toFixed(0)} s, ${state.size}. Drag or press an arrow key to look back; `
+    + "Space plays the recording";
   if (held) return;
   [line.min, line.max] = [String(state.low), String(state.high)];
   line.value = String(state.shown ?? state.high);

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import SceneCommand, Vector, vector_of
+from app.messages import Pull, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import at_most, extent, sea_of
 from app.scenes.mooring.files.from_file import opened, slack_of
 from app.scenes.mooring.frame import MooringFrame
@@ -20,6 +20,7 @@ from sim.mooring.motion import cubic
 from sim.waves import Waves
 
 VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
+REACH = "The lines hold: no farther"
 CHANGING = (
     "state", "system", "tensions", "excursion", "start", "vessel", "sea", "step_modes", "moved_by",
 )  # fmt: skip
@@ -82,6 +83,11 @@ class FileScene(LineScene):
     def body_place(self) -> NDArray[np.float64]:
         """(3,) [m] of the vessel's middle at the surface."""
         return np.add(self.middle, self.moved_by)
+
+    def pull_of_body(self, target: Vector) -> Pull:
+        """The pull of the vessel towards a target [m]."""
+        way = float(np.hypot(*np.subtract(target, self.middle)[:2]))
+        return Pull(vector_of(self.body_place()), target, min(1.0, way / self.file.farthest), REACH)
 
     def rotation(self) -> NDArray[np.float64]:
         """No rotation (3,) [rad]."""

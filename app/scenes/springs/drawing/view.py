@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.formatting import largest_force
 from app.messages import F, P, R, Vector
 from app.render.cameras import NEAR
 from app.render.handles.dragging import GrabLine, SurfaceDrag, drag
@@ -45,7 +46,7 @@ class SpringView(SceneView[P, F, R]):
         if grab is None:
             self.grab.show(None)
         else:
-            self.grab.show((self.points[grab.particle], grab.target), grab.load, grab.limit)
+            self.grab.show((self.points[grab.particle], grab.target), grab.load, largest_force(grab.limit))
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky and floor dark, or light again, for one browser."""

@@ -119,6 +119,14 @@ def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():
         run_for(scene, 0.5)
     away = scene.body_place() - scene.middle
     assert -scene.file.farthest <= away[0] < -3.0
+    pull = scene.frame().grab
+    assert pull is not None
+    assert (pull.load, pull.limit) == (1.0, "The lines hold: no farther")
+    scene.handle(GrabTo(0, (scene.middle[0] - 0.5 * scene.file.farthest, scene.middle[1], 0.0), 1))
+    pull = scene.frame().grab
+    assert pull is not None
+    assert pull.load == pytest.approx(0.5)
+    scene.handle(GrabTo(0, (-1e4, 0.0, 7.0), 1))
     assert away[1:] == pytest.approx([0.0, 0.0])
     assert scene.readings().lines[0].fairlead > 1.5 * 444053.0
     scene.handle(Release(1))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.formats.formatting import largest_force
 from app.messages import GrabTo, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.contract import Advice
@@ -57,13 +58,19 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
     assert frame.rest == (3.0, -1.0, 0.0)
 
 
-def test_the_mouse_pulls_with_its_largest_force_at_most():
+def test_the_mouse_pulls_with_its_largest_force_at_most_and_says_so() -> None:
     scene = MooringScene(MooringParams(**SMALL, pull=0.5))
     weight = scene.params.density * hull_of(scene.params).volume * 9.81
-    scene.grabbed = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
-    np.testing.assert_allclose(scene.grab_force()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
-    scene.grabbed = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
-    assert 0.0 < scene.grab_force()[0, 0] < 0.01 * weight
+    for away, is_at_limit in ((0.01, False), (1e3, True)):
+        scene.handle(GrabTo(0, vector_of(scene.body_place() + (away, 0.0, 0.0))))
+        pull = scene.frame().grab
+        assert pull is not None
+        assert pull.place == vector_of(scene.body_place())
+        assert pull.limit == largest_force(0.5 * weight)
+        assert (pull.load == 1.0) is is_at_limit
+        force = (scene.driven()["steady"] - scene.system.kernel_view(scene.step).steady)[0]
+        np.testing.assert_allclose(force, [0.5 * weight * pull.load, *[0.0] * 5], rtol=1e-6, atol=1e-3)
+        assert force[0] > 0.0
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -169,7 +176,7 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     run(scene, 2.0)
     assert scene.body_place()[1] > 1.0
     scene.handle(Release(client=2))
-    assert scene.frame().grab == (0.0, 20.0, 0.0)
+    assert scene.frame().grab.target == (0.0, 20.0, 0.0)
     scene.handle(Release(client=1))
     assert scene.frame().grab is None
 

@@ -14,10 +14,10 @@ import pytest
 import trimesh
 
 from app.__main__ import main
-from app.formats.formatting import fixed
+from app.formats.formatting import fixed, largest_force
 from app.messages import GrabTo, Place, Release
 from app.scenes.contract import AnyScene
-from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
+from app.scenes.radial_sea.bodies import BODY_KINDS, GRAVITY, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.moorings import BED_DEPTH, LINE_REACH
 from app.scenes.radial_sea.oil.well_blowout import LANDING, WellBlowout, slick_reach
@@ -124,14 +124,37 @@ def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
     assert np.hypot(*(scene.bodies.fleet.position[2, :2] - home)) < 3.0
 
 
+def test_the_pull_of_a_body_says_that_it_is_at_its_limit() -> None:
+    scene = RadialSeaScene(with_parameters(**CALM, pull=2.0))
+    weight = GRAVITY * float(scene.bodies.fleet.mass[0])
+    x, y, z = scene.bodies.fleet.position[0].tolist()
+    scene.handle(GrabTo(0, (x, y, z)))
+    assert scene.frame().grabs[0].load == 0.0
+    scene.advance(1)
+    for away, is_at_limit in ((0.002, False), (30.0, True)):
+        scene.handle(GrabTo(0, (x + away, y, z)))
+        before = scene.bodies.fleet.velocity[0, 0]
+        scene.advance(1)
+        (pull,) = scene.frame().grabs
+        assert pull.place == tuple(scene.bodies.fleet.position[0])
+        assert pull.limit == largest_force(2.0 * weight)
+        assert (pull.load == pytest.approx(1.0)) is is_at_limit
+        # Added mass makes the body heavier than it is.
+        gained = (scene.bodies.fleet.velocity[0, 0] - before) / (pull.load * 2.0 * GRAVITY * scene.step)
+        assert 0.3 < gained < 1.0
+    scene.handle(Release())
+    scene.handle(GrabTo(0, (x, y, z)))
+    assert scene.frame().grabs[0].load == 0.0
+
+
 def test_a_body_held_by_one_browser_is_not_taken_over_by_another() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
     scene.handle(GrabTo(0, (9.0, 0.0, 0.0), client=2))
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
-    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    assert [pull.target for pull in scene.frame().grabs] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
     scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body stays dragged
-    assert scene.frame().grabs[0][1] == (1.5, 0.0, 0.0)
+    assert scene.frame().grabs[0].target == (1.5, 0.0, 0.0)
 
 
 def test_a_browser_lets_go_only_of_what_it_holds() -> None:
@@ -139,14 +162,14 @@ def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     scene.handle(Release(client=2))
-    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0)]
+    assert [pull.target for pull in scene.frame().grabs] == [(1.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[0] > 0.0
     assert scene.bodies.fleet.pull_limit[1] == 0.0
     scene.handle(Release(client=3))
     assert len(scene.frame().grabs) == 1
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))  # free again
     scene.handle(GrabTo(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
-    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
+    assert [pull.target for pull in scene.frame().grabs] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
 

@@ -181,7 +181,7 @@ class Lab:
             return
         self.settings.history.press(1)
         for value in values:
-            self.settings.set(name, value)
+            self.settings.set(name, value, 1)
             self.settings.history.changed_at -= 100.0
             if self.rng.random() < 0.3:
                 self.loop.tick(0.0)

@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -90,6 +92,15 @@ def test_a_system_that_is_written_is_read_as_it_was(tmp_path):
     renumbered = tuple(point._replace(id=i) for i, point in enumerate(points, 1))
     relined = (lines[0]._replace(id=1, start=1, end=2), lines[1]._replace(id=2, start=2, end=3))
     assert read_moordyn(path) == dataclasses.replace(system, points=renumbered, lines=relined)
+
+
+def test_the_numbers_of_a_file_are_written_as_a_person_writes_them(tmp_path: Path) -> None:
+    path = tmp_path / "in.txt"
+    path.write_text(TEXT, "utf-8")
+    write_moordyn(read_moordyn(path), path)
+    words = path.read_text("utf-8").split()
+    assert {"0.09", "80", "-0.8", "1.6", "0.1"} <= set(words)
+    assert not any(len(word) > 15 for word in words if re.fullmatch(r"-?[0-9.]+", word))
 
 
 def replaced(old: str, new: str) -> str:

@@ -70,7 +70,7 @@ class GrabLine:
             self.show((pull.place, pull.target), pull.load, pull.limit)
 
     def show_limit(self, ends: Any, words: str) -> None:
-        """Show what limits the pull; "": it is below its limit."""
+        """Name the limit of the pull at the end of its line, or remove the name."""
         is_at_limit = words != ""
         if is_at_limit is not self.is_at_limit:
             self.is_at_limit = is_at_limit

@@ -52,7 +52,7 @@ def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(still: Any):
     # A tenth of what shows, again and again: what has not been shown must add up.
     creep = [first._replace(points=first.points + np.float32(k * 2e-5)) for k in range(1, 12)]
     assert [handed_over(still, frame)[1] for frame in creep[:9]] == [0] * 9
-    hanger = still.view.hanger.vertices.nbytes  # which moves with the root
+    hanger = still.view.hanger.shapes[0].nbytes  # which moves with the root
     assert handed_over(still, creep[10])[1] == tube_bytes(still) + points + hanger
     assert np.array_equal(still.view.ropes.tension, first.tension)
     # The same holds for colours.

@@ -125,6 +125,11 @@ PRESETS: dict[str, dict[str, Any]] = {
         "start": "level", "pinned": "rim", "rows": 48, "cols": 48, "sphere": True, "sphere_radius": 0.25, "bob": 0.45,
         "damping": 0.005, "full_strain": 20.0, "time_step": 1 / 3600, "friction": 0.0, "density": 0.4, "wind": 0.0,
     },
+    "Tablecloth": {
+        "start": "level", "pinned": "free", "rows": 32, "cols": 32, "sphere": True, "sphere_radius": 0.5,
+        "thickness": 0.04, "bend": 3.0, "integrator": "symplectic_euler", "time_step": 1 / 1600, "damping": 0.01,
+        "wind": 0.0, "full_strain": 2.0, "contact_stiffness": 60.0, "contact_damping": 0.08, "friction": 0.3,
+    },
 }  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
@@ -132,6 +137,7 @@ ABOUT = {  # preset -> what it shows and what to try
     "Flag in wind": "A flag in gusty wind: turn the wind down until it hangs.",
     "Drape over the sphere": "A loose cloth falls over a sphere: move the sphere by its arrows.",
     "Trampoline": "A sphere moves up and down in a cloth held at its rim: see where it stretches most.",
+    "Tablecloth": "Friction holds the cloth on the sphere: pull a corner until it slides off.",
 }
 
 

@@ -193,6 +193,27 @@ def test_a_sphere_that_is_pulled_through_the_curtain_takes_the_cloth_along():
     assert (scene.state.x[1][near] > sphere[1]).all()
 
 
+def test_friction_holds_the_tablecloth_until_a_hand_pulls_it_off_the_sphere() -> None:
+    """Its middle does not creep; its edges still swing, and so move what lies by less than 0.2 mm."""
+    scene = ClothScene(check_record(ClothParams, PRESETS["Tablecloth"]))
+    sphere = scene.net.sphere
+    assert sphere is not None
+    run(scene, 4.0)
+    before = scene.state.x.copy()
+    run(scene, 2.0)
+    lies = before[2] > sphere[2] + 0.8 * sphere[3]
+    assert lies.sum() > 60
+    assert np.linalg.norm(scene.state.x - before, axis=0)[lies].max() < 2e-4
+    corner = scene.state.x[:, 0, 0].copy()
+    for _ in range(150):
+        corner += np.array([-0.7, -0.7, 0.2]) / 60
+        scene.handle(GrabTo(0, (float(corner[0]), float(corner[1]), float(corner[2])), 1))
+        run(scene, 1 / 60)
+    scene.handle(Release(1))
+    run(scene, 1.0)
+    assert scene.state.x[2].max() < 0.2
+
+
 def test_a_new_grid_keeps_the_shape():
     scene = ClothScene(SMALL)
     run(scene, 0.3)

@@ -61,9 +61,9 @@ def test_the_simulation_never_sees_a_number_that_is_half_typed(shown: tuple[View
     seen: set[float] = set()
     take = lab.loop.runs.take
 
-    def watched(params):
+    def watched(params, *rest):
         seen.add(params.time_step)
-        return take(params)
+        return take(params, *rest)
 
     lab.loop.runs.take = watched
     type_into(lab, tab, "time_step", "0.005", delay=150)

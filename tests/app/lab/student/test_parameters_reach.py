@@ -43,7 +43,8 @@ CLOTH = ClothParams(
 PLEATS = dataclasses.replace(
     CLOTH, start="hanging", pinned="corners", width=0.4, length=0.4, gather=0.4, shear=20.0, bend=0.5, sphere=False
 )
-BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material")), "cloth": (CLOTH, PLEATS)}
+KNOT = dataclasses.replace(ROPE, start="knot", points=30, length=1.2)  # whose strands touch from the start
+BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material"), KNOT), "cloth": (CLOTH, PLEATS)}
 SCENES: dict[str, Any] = {"rope": RopeScene, "cloth": ClothScene}
 HELD = {"rope": 5, "cloth": 22}  # point that the hand pulls
 FILES = {"rope": "rope.py", "cloth": "cloth.py"}

@@ -20,7 +20,7 @@ from app.scenes.quantities import measured, plotted_quantities, recorded_quantit
 from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.quantities import STABILITY
 from app.server.loop.sim_loop import SimLoop
-from sim.parameters import check_record
+from sim.parameters import check_record, effect_of_change
 from sim.springs import INTEGRATORS
 from sim.springs.stability import Gauge
 from sim.validation import DivergenceError
@@ -41,7 +41,8 @@ def marks_of(scene: ClothScene) -> dict[str, str]:
 
 def change(scene: ClothScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
+    params = dataclasses.replace(scene.params, **changes)
+    Loop(scene, paused=True).runs.take(params, effect_of_change(scene.params, params))
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -327,7 +328,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit_and_costs_
         if frame % 9 == 5:
             with monkeypatch.context() as patch:
                 patch.setattr("app.scenes.springs.net_motion.gauge", None)  # a call would fail
-                loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 9 % len(LOOKS)]))
+                loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 9 % len(LOOKS)]), "look")
         for loop, account in zip(loops, accounts, strict=True):
             loop.tick(1 / 60)
             scene, state = loop.scene, loop.scene.state

@@ -31,7 +31,7 @@ from app.scenes.springs.rope_handles import offset_of
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop.sim_loop import SimLoop
 from sim.frames import steps_for
-from sim.parameters import check_record, parameters_of
+from sim.parameters import check_record, effect_of_change, parameters_of
 from sim.springs import simulate
 from sim.springs.analysis.reference_run import (
     ATOL,
@@ -55,7 +55,8 @@ def race(**changes) -> Any:
 
 def change(scene: RaceScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
+    params = dataclasses.replace(scene.params, **changes)
+    Loop(scene, paused=True).runs.take(params, effect_of_change(scene.params, params))
 
 
 def run(scene: RaceScene, seconds: float) -> None:
@@ -299,7 +300,7 @@ def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
     )
     for frame in range(60):
         if frame % 10 == 5:
-            loops[1].runs.take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]))
+            loops[1].runs.take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]), "look")
         for loop in loops:
             loop.tick(FRAME_INTERVAL)
     for one, other in zip(alone.race.entrants, changed.race.entrants, strict=True):

@@ -26,7 +26,7 @@ from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
 from app.scenes.springs.speed_advice import held
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop.sim_loop import SimLoop
-from sim.parameters import check_record, parameters_of
+from sim.parameters import check_record, effect_of_change, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.extremes import extremes
 from sim.springs.stability import Gauge
@@ -45,7 +45,8 @@ def run(scene: RopeScene, frames: int, steps: int) -> None:
 
 def change(scene: RopeScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
+    params = dataclasses.replace(scene.params, **changes)
+    Loop(scene, paused=True).runs.take(params, effect_of_change(scene.params, params))
 
 
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name != "Euler explodes"])
@@ -277,7 +278,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit(integrator
     accounts: list[dict[int, tuple[float, ...]]] = [{}, {}]
     for frame in range(90):
         if frame % 10 == 5:
-            loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 10 % len(LOOKS)]))
+            loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 10 % len(LOOKS)]), "look")
         for loop, account in zip(loops, accounts, strict=True):
             loop.tick(FRAME_INTERVAL)
             scene, state = loop.scene, loop.scene.state

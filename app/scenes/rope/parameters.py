@@ -73,12 +73,13 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Knot": {
         "units": "material", "points": 80, "length": 4.0, "axial_stiffness": 500.0, "axial_viscosity": 2.0,
-        "mass_per_length": 2.0, "drag_per_length": 1.0, "time_step": 1 / 960, "self_contact": True, "start": "knot",
-        "end_held": True,
+        "mass_per_length": 2.0, "drag_per_length": 1.0, "contact_stiffness": 1e4, "contact_damping": 10.0,
+        "time_step": 1 / 960, "self_contact": True, "start": "knot", "end_held": True,
     },
     "Coil": {
         "units": "material", "points": 80, "length": 2.9, "axial_stiffness": 500.0, "axial_viscosity": 2.0,
-        "mass_per_length": 2.0, "drag_per_length": 1.0, "time_step": 1 / 960, "self_contact": True, "start": "hanging",
+        "mass_per_length": 2.0, "drag_per_length": 1.0, "contact_stiffness": 1e4, "contact_damping": 10.0,
+        "time_step": 1 / 960, "self_contact": True, "start": "hanging",
     },
 }  # fmt: skip
 

@@ -24,10 +24,14 @@ from sim.springs.points.order import in_turn
 
 @kernel(inline=True)
 def depth_of(p, pair):
-    """Depth [m] of a touching pair; 0 if it does not touch, its places coincide, or its links are neighbours."""
-    if pair.distance == 0.0 or are_neighbours(p, pair.a, pair.b):
-        return 0.0
-    return max(0.0, p.thickness - pair.distance)
+    """Depth [m] of a touching pair, 0 if it does not touch or its places coincide."""
+    return max(0.0, p.thickness - pair.distance) if pair.distance > 0.0 else 0.0
+
+
+@kernel(inline=True)
+def pushes(p, q):
+    """False of pair q if its links are neighbours, which only must not pass each other."""
+    return not are_neighbours(p, p.pairs[q, 0], p.pairs[q, 1])
 
 
 @kernel(inline=True)
@@ -61,6 +65,8 @@ def add_kick(out, p, pair, size):
 @kernel(allocates=False)
 def accelerate(x, v, t, p, with_damping, f, a):
     for q in range(refresh_pairs(x, p)):
+        if not pushes(p, q):
+            continue
         pair = pair_number(x, p, q)
         depth = depth_of(p, pair)
         if depth > 0.0:
@@ -77,7 +83,10 @@ def damp_strands_kicked(x, v, a, mean, s, p, reverse):
     """
     n, count = p.cols, pairs_at_hand(x, p)
     for turn in range(count):
-        pair = pair_number(x, p, in_turn(turn, count, reverse))
+        q = in_turn(turn, count, reverse)
+        if not pushes(p, q):
+            continue
+        pair = pair_number(x, p, q)
         depth, w = depth_of(p, pair), pair_mobility(p, pair)
         if depth == 0.0 or w == 0.0:
             continue
@@ -102,7 +111,7 @@ def energy(x, t, p):
     """1/2 k depth^2 over the touching pairs [J]."""
     total = 0.0
     for q in range(refresh_pairs(x, p)):
-        depth = depth_of(p, pair_number(x, p, q))
+        depth = depth_of(p, pair_number(x, p, q)) if pushes(p, q) else 0.0
         total += 0.5 * p.contact_k * depth * depth
     return total
 
@@ -125,6 +134,8 @@ def power(x, v, t, p, with_damping):
     if not with_damping and p.pins.shape[0] == 0:
         return dissipated, work
     for q in range(refresh_pairs(x, p)):
+        if not pushes(p, q):
+            continue
         pair = pair_number(x, p, q)
         depth = depth_of(p, pair)
         if depth > 0.0:
@@ -179,6 +190,8 @@ def tangent(x, u, t, p, part, longest, out):
         return
     n = p.cols
     for q in range(refresh_pairs(x, p)):
+        if not pushes(p, q):
+            continue
         pair = pair_number(x, p, q)
         depth = depth_of(p, pair)
         if depth == 0.0:

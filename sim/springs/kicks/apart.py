@@ -153,10 +153,24 @@ def hold_back(x, v, p):
                 v[i] *= part[j]
 
 
+@kernel(noalias=True, inline=True)
+def farthest_in_step(x, last, seen, n):
+    """Largest squared displacement of a point since the list was made, at the start or at the end of the step."""
+    most = 0.0
+    for j in range(n):
+        dx, dy, dz = x[j] - seen[j], x[n + j] - seen[n + j], x[n + n + j] - seen[n + n + j]
+        ex, ey, ez = last[j] - seen[j], last[n + j] - seen[n + j], last[n + n + j] - seen[n + n + j]
+        most = max(most, dx * dx + dy * dy + dz * dz, ex * ex + ey * ey + ez * ez)
+    return most
+
+
 @kernel(allocates=False)
 def may_meet(x, p):
     """False if no pair can come too near, by its distance when the list was made and the motion since."""
     n = np.uint64(p.cols)
+    if 2.0 * math.sqrt(farthest_in_step(x, p.last, p.seen, n)) < p.nearest[0] - LEAST * p.thickness:
+        return False
+    # Of a rope that flies the motion about the mean decides.
     since, now = math.sqrt(farthest(p.last, p.seen, n)), math.sqrt(farthest(x, p.last, n))
     return not 2.0 * (since + now) < p.nearest[0] - LEAST * p.thickness
 

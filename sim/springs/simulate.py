@@ -119,9 +119,10 @@ def simulate(
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
     if run.unsettled > 0:
         steps = f"{run.unsettled} steps of {run.step:g} s"
-        unsettled = f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver"
-        held_back = f"strands that touch were slowed down in {steps}, as impulses alone did not keep them apart"
-        text = held_back if getattr(system, "is_strand", False) else unsettled
+        if isinstance(system, Net) and system.is_strand:
+            text = f"strands that touch were slowed down in {steps}, as impulses alone did not keep them apart"
+        else:
+            text = f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver"
         warnings.warn(text, ApproximationWarning, stacklevel=2)
     return run
 

@@ -85,7 +85,7 @@ def warm_up(law: str = SPRING, *, touching: bool = False) -> Pieces:
 
 
 def pieces_of_touch(names: tuple[str, ...]) -> tuple[str, ...]:
-    """The names of pieces as they are compiled for ropes that touch themselves."""
+    """Names of the pieces for ropes that touch themselves."""
     return tuple(f"{name}, touching itself" for name in names)
 
 

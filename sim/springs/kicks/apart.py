@@ -30,7 +30,7 @@ SWEEPS = 30  # over the pairs
 TRIES = 60  # steps of conservative advancement
 NEARLY = 1.01  # of the least distance, at which two links have met
 BOUND = 0.45  # part of a pair's way to its least distance that each of its points may move, if the sweeps do not end
-NEVER = 2.0  # part of a step
+NEVER = 2.0  # steps: after the end of the present one
 
 
 @kernel(noalias=True, allocates=False)

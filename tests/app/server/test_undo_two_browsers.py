@@ -39,7 +39,7 @@ ACTS = 34
 
 
 class Screen(NamedTuple):
-    """What the lab shows, read between two steps."""
+    """State of the lab, read between two steps."""
 
     time: float  # [s]
     act: int  # that began the run

@@ -65,7 +65,7 @@ class Sequence:
             self.page.wait_for_timeout(200)
 
     def shown(self) -> dict[str, str]:
-        """What the page shows; nothing while it is loaded."""
+        """Words of the page; nothing while it is loaded."""
         try:
             return self.page.evaluate(SHOWN)
         except playwright.Error:

@@ -90,7 +90,7 @@ class Lab(NamedTuple):
         return match[1]
 
     def motion(self) -> str:
-        """What the next ticks show: time, moments of a divergence, or a picture that stands."""
+        """Appearance of the next ticks: time, moments of a divergence, or a picture that stands."""
         time, frames = self.scene.time, set()
         for _ in range(TICKS):
             self.tick()
@@ -100,7 +100,7 @@ class Lab(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What a person sees after an event."""
+    """Words and motion on the page after an event."""
 
     word: str  # of the status line
     begins: bool  # the next tick begins the scene again

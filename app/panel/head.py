@@ -7,6 +7,7 @@ import viser
 from app.messages import Command, Pause, Play, RunState, Status, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
+from app.render.handles.channel import Channel, Message
 from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
@@ -15,6 +16,7 @@ from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] of a step, above which the status line reports it
 COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce()}
+BUTTONS = ("Play", "Pause", "Step", "Reset", "Camera", "Plots", "Undo")
 STATE_WORDS = {  # of the status line, with their colours
     RunState.MAKING: ("Running", GOOD_COLOUR),
     RunState.MAKING_PAUSED: ("Paused", WARNING_COLOUR),
@@ -33,6 +35,7 @@ class Head:
     def __init__(
         self,
         gui: viser.GuiApi,
+        channel: Channel,
         view: AnyView,
         settings: SceneSettings,
         scenes: tuple[str, ...],
@@ -40,6 +43,7 @@ class Head:
     ) -> None:
         """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
+        self.channel = channel
         self.running = True  # as shown by the buttons
         self.told: tuple[object, ...] = ()  # a change of it is shown at once
         self.visited = self.query = ""  # preset known to the page, and its query, for Back and Forward of the browser
@@ -60,7 +64,9 @@ class Head:
             self.again.on_click(self.on_again)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
-            self.here = gui.add_html("")
+
+        channel.listen("run", str, self.press)
+        channel.listen("scene", str, self.open_scene)
 
     async def on_preset(self, event: ViserEvent) -> None:
         """Take the preset that a browser chose; viser also calls this after `show_preset`, without a client."""
@@ -73,7 +79,21 @@ class Head:
 
     async def on_button(self, event: ViserEvent) -> None:
         """Carry out the label of the pressed button."""
-        match event.target.value:
+        self.act(event.target.value, event.client)
+
+    def press(self, message: Message[str]) -> None:
+        """Press a button for the page of a comparison, whose own buttons have the same names."""
+        if message.value in BUTTONS:
+            self.act(message.value, message.client)
+
+    def open_scene(self, message: Message[str]) -> None:
+        """Open the scene of a picture."""
+        if message.value in self.scenes:
+            self.settings.open_first_view_of(message.value)
+
+    def act(self, name: str, client: viser.ClientHandle | None) -> None:
+        """Carry out the label of a button. client: its browser."""
+        match name:
             case "Plots":
                 self.settings.toggle_plots()
             case "Undo":
@@ -81,9 +101,9 @@ class Head:
             case "Reset":
                 self.settings.reset()
             case "Camera":
-                if event.client is not None:
-                    self.reset_view(event.client)
-            case name:
+                if client is not None:
+                    self.reset_view(client)
+            case _:
                 self.settings.post(COMMANDS[name])
 
     async def on_again(self, event: ViserEvent) -> None:
@@ -106,12 +126,9 @@ class Head:
             preset = self.visited if self.visited in kind.presets else ""
             self.query = write_query(kind, settings.params_of(self.visited), preset)
         # For js/sharing/visited.js, js/panel/acts.js and js/page/veil.js.
-        awaited = "" if settings.placing is None else settings.placing.act
-        told = (
-            '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}" '
-            'data-springtide-awaited="{}"></span>'
-        )
-        self.here.content = str(fill(told, self.query, settings.undo_words, settings.redo_words, awaited))
+        awaited = None if settings.placing is None else settings.placing.act
+        acts = {"here": self.query, "undo": settings.undo_words, "redo": settings.redo_words, "awaited": awaited}
+        self.channel.tell("acts", acts)
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are out of date."""
@@ -143,7 +160,7 @@ class Head:
 
 def button_names(*, running: bool) -> tuple[str, ...]:
     """Labels of the buttons: the first names its next action."""
-    return "Pause" if running else "Play", "Step", "Reset", "Camera", "Plots", "Undo"
+    return "Pause" if running else "Play", *BUTTONS[2:]
 
 
 def add_scene_chooser(

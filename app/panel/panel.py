@@ -14,9 +14,8 @@ from app.lab.student.workbook import Workbook
 from app.messages import RunRow
 from app.panel.controls.controls import Controls
 from app.panel.controls.controls_tab import VIEW_GROUPS, ControlsTab
-from app.panel.controls.holding import add_holding
 from app.panel.controls.scene_pictures import add_scene_pictures
-from app.panel.display import add_switches, add_theme_buttons
+from app.panel.display import add_switches, follow_theme
 from app.panel.head import Head
 from app.panel.keys import add_keys
 from app.panel.plots import Plots
@@ -29,6 +28,7 @@ from app.panel.sharing.scene_switches import SceneSwitches
 from app.panel.sharing.share import Share
 from app.panel.workbook.guide import GuideTab
 from app.render.cameras import place_camera
+from app.render.handles.channel import Message, channel_of
 from app.scenes.contract import AnySnapshot, AnyView
 
 if TYPE_CHECKING:
@@ -63,27 +63,32 @@ class Panel:
         replay. beside: shows other set-ups beside this one; None if this one is beside another. changes: of the
         server.
         """
-        kind, gui = settings.kind, server.gui
+        kind, gui, channel = settings.kind, server.gui, channel_of(server)
         self.server, self.kind, self.view, self.settings, self.workbook = server, kind, view, settings, workbook
         self.status_at = self.marks_at = 0.0
         self.plots = Plots(server, kind)
-        add_theme_buttons(gui, view)
-        add_holding(gui, settings.history)
-        self.head = Head(gui, view, settings, scenes, self.place_first_view)
+        follow_theme(channel, view)
+        channel.listen("held", bool, self.note_held)  # js/panel/fields.js
+        self.head = Head(gui, channel, view, settings, scenes, self.place_first_view)
         self.controls = Controls(gui, settings)
         self.recorder = Recorder(kind.packing, wake)
-        self.timeline = Timeline(gui, self.recorder, settings)
+        self.timeline = Timeline(channel, self.recorder, settings)
         self.share = Share(
             server, settings, self.recorder, self.plots, make_replay,
             head=self.head.folder, changes=changes, workbook=workbook, beside=beside,
         )  # fmt: skip
         self.guide: GuideTab | None = None
         self.code: CodePanel | None = None
-        self.compare = None if beside is None else CompareFolder(gui, self.head.buttons, settings, beside)
+        self.compare = None if beside is None else CompareFolder(gui, channel, settings, beside)
         self.fill_tabs(session)
         settings.watchers.append(self.show_settings)
         self.show_settings()
         add_keys(gui, settings, self.place_first_view)
+
+    def note_held(self, message: Message[bool]) -> None:
+        """Note that a browser holds a slider, or releases it: all changes meanwhile are one act."""
+        note = self.settings.history.press if message.value else self.settings.history.release
+        note(message.client.client_id)
 
     def fill_tabs(self, session: "Session | None") -> None:
         """Make the tabs: the exercises first for a student's folder, otherwise the controls."""
@@ -94,8 +99,10 @@ class Panel:
         tabs = {name: group.add_tab(name) for name in names if name != LAB or workbook is not None}
         with tabs[CONTROLS]:
             if self.head.chooser is not None:
-                add_scene_pictures(gui, self.head.chooser, self.head.scenes)
-            self.controls_tab = ControlsTab(gui, self.view, self.settings, self.controls, tabs[CONTROLS])
+                add_scene_pictures(gui, self.head.scenes)
+            self.controls_tab = ControlsTab(
+                gui, channel_of(self.server), self.view, self.settings, self.controls, tabs[CONTROLS]
+            )
         if workbook is not None:
             self.guide = GuideTab(gui, self.kind, workbook, self.settings.set_up, tabs[LAB], self.controls)
             if session is not None:

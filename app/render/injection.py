@@ -9,8 +9,8 @@ vertices of a mesh. Displacements of a drawn mesh travel packed (`app/formats/pa
 the drawn mesh's own vertices are sent only where a browser does not say that it has the shader. A hidden mesh named
 "<node>/<suffix>" makes the script replace the shader of "<node>"; each file in `js/` names its suffix.
 
-Each page reports whether that worked: the script sends the names of the nodes that it has drawn with their shader
-through a hidden field, whenever they change.
+Each page reports whether that worked: the script says on topic "drawn" which nodes it has drawn with their shader,
+whenever these change.
 """
 
 import time
@@ -19,17 +19,14 @@ from typing import cast
 import numpy as np
 import viser
 
-from app.render.handles.viser_inside import uuid_of
-from app.render.handles.viser_types import GuiHandle, ViserEvent
-from app.render.markup.html import Html, fill
+from app.render.handles.channel import Message, channel_of, topic_html
+from app.render.markup.html import Html
 
-LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 CONTACT_SHADOW = "contact_shadow"
-WHOLE = " whole"  # end of a page's word once its first picture is whole (`js/scene/main.js`)
 
 # Attribute of a server with its injector, None if shaders are disabled. A dictionary outside would keep both for good,
-# as the injector's field refers to the server.
+# as the injector refers to the server.
 SHADERS = "springtide_shaders"
 
 
@@ -41,6 +38,7 @@ class ShaderInjector:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
+        self._scene = 0  # number of the scene
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
         self._sky = ""  # name of the sky that lights the scene; "" before the first picture
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
@@ -48,40 +46,39 @@ class ShaderInjector:
         self.whole: set[int] = set()  # clients that have shown a whole picture of the scene
         self.is_recorded = False  # True if drawing is only recorded, for pages that have the script
         server.on_client_disconnect(self._forget)
-        self.restart(server)
+        self._channel = channel_of(server)
+        self.restart()
 
-    def restart(self, server: viser.ViserServer) -> None:
-        """Begin a scene: a new hidden field through which pages report, so nothing is left of an earlier one."""
+    def restart(self) -> None:
+        """Begin a scene in a new panel."""
         self._watched.clear()
         self._drawn.clear()
         self.whole.clear()
         self._sky = ""
-        inbox: GuiHandle = server.gui.add_text("Shaders", "", multiline=True, visible=False)
-        self._inbox = uuid_of(inbox)
-        self._field: GuiHandle = server.gui.add_html(str(self._words()), order=LAST)
+        self._scene += 1
+        self._channel.listen("drawn", dict, self._take)
+        self._tell()
 
-        @inbox.on_update
-        async def _(event: ViserEvent) -> None:
-            # The page's own word comes first: two pages may report the same.
-            first, *names = inbox.value.split("\n")
-            self._drawn[event.client_id] = frozenset(names)
-            if first.endswith(WHOLE):
-                self.whole.add(event.client_id)
+    def _take(self, message: Message[dict[str, object]]) -> None:
+        """A page says which nodes it draws with their shader, and whether it has shown a whole picture of the scene."""
+        client, names = message.client.client_id, message.value.get("nodes")
+        if not isinstance(names, list) or message.value.get("scene") != self._scene:
+            return  # of the scene before
+        self._drawn[client] = frozenset(map(str, cast(list[object], names)))
+        if message.value.get("isWhole") is True:
+            self.whole.add(client)
 
-    def _words(self) -> Html:
-        """The field of the page: where it reports to, and the parts of a whole picture."""
-        return fill('<span data-springtide-shaders="{}">{}</span>', self._inbox, self.whole_picture())
+    def _state(self) -> dict[str, object]:
+        """A name of the scene, and the sky and the nodes that its whole picture has (`js/scene/frames.js`)."""
+        return {"scene": self._scene, "sky": self._sky, "nodes": list(self._watched)}
 
     def whole_picture(self) -> Html:
-        """The sky and the nodes that a whole picture has, as the page reads them (`js/scene/frames.js`)."""
-        names = "\n".join(self._watched)
-        return fill('<span data-springtide-sky="{}" data-springtide-nodes="{}"></span>', self._sky, names)
+        """The same for the page of a replay, which has no panel."""
+        return topic_html("picture", self._state())
 
     def _tell(self) -> None:
-        """Show the page other parts of a whole picture."""
-        words = str(self._words())
-        if self._field.content != words:
-            self._field.content = words
+        """Tell the pages the parts of a whole picture."""
+        self._channel.tell("picture", self._state())
 
     async def _forget(self, client: viser.ClientHandle) -> None:
         """A browser has left."""
@@ -148,9 +145,10 @@ def reset_page(server: viser.ViserServer) -> None:
     """Remove every node from the scene of a server and every element from its panel."""
     server.gui.reset()
     server.scene.reset()
+    channel_of(server).restart()
     injector = getattr(server, SHADERS, None)
     if injector is not None:
-        injector.restart(server)
+        injector.restart()
 
 
 def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:

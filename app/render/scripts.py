@@ -18,10 +18,11 @@ from app.render.brightness import DARK_LIFT, LUMA
 from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
-ROOMS = ("core", "page", "panel", "scene", "sea", "shading", "sharing")
+ROOMS = ("beside", "core", "page", "panel", "scene", "sea", "shading", "sharing")
 BEFORE = ("failures.js", "address.js", "connection.js")  # of a lab
 BEFORE_REPLAY = ("failures.js", "replay.js")
-PAGE, REPLAY = "page/main.js", "page/replay.js"  # the modules that start a lab and a replay
+# The modules that start a lab, a replay, and the page with the panes.
+PAGE, REPLAY, BESIDE = "page/main.js", "page/replay.js", "beside/main.js"
 SHARED = {
     "WATER_UNIFORMS": WATER_UNIFORMS,
     "RAIN_UNIFORMS": RAIN_UNIFORMS,

@@ -2,6 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Life } from "./js/core/life.js";
 
+/** @type {(changes: object[]) => void} */
+let notify = () => {}; // of the page's observer
+
 // A page with a renderer whose frames are drawn when the test says so.
 function makePage() {
   /** @type {(() => void)[]} */
@@ -9,14 +12,16 @@ function makePage() {
   const nothing = { observe() {}, disconnect() {}, querySelectorAll: () => [], querySelector: () => null };
   const scene = { environment: {}, background: {}, environmentIntensity: 1, traverse() {} };
   const camera = { position: 0, quaternion: 0, projectionMatrix: 0 };
+  Object.assign(globalThis, { Node: { ELEMENT_NODE: 1 } });
   const element = Object.assign(new EventTarget(), { style: {}, width: 4, height: 3, clientWidth: 4, clientHeight: 3 });
   const documentElement = { classList: { contains: () => false } };
-  /** @type {Record<string, object>} */
-  const nodeRefFromName = {};
-  const SIGNALED = 1, told = { springtideSky: "park", springtideNodes: "" }; // by the server
-  let looked = 0; // how often the page was asked for what the server has told
-  const querySelector = (/** @type {string} */ found) =>
-    found === "[data-springtide-sky]" ? ((looked += 1), { dataset: told }) : null;
+  let looked = 0; // how often the page looked for a node
+  const nodeRefFromName = new Proxy(/** @type {Record<string, object>} */ ({}), {
+    get: (nodes, name) => ((looked += 1), Reflect.get(nodes, name)),
+  });
+  const SIGNALED = 1, picture = { scene: 1, sky: "park", nodes: /** @type {string[]} */ ([]) }; // topic of the lab
+  const querySelectorAll = (/** @type {string} */ selector) =>
+    selector === "[data-springtide-topic]" ? [{ dataset: { springtideTopic: "picture", value: JSON.stringify(picture) } }] : [];
   let drawn = 0; // fences up to this number are signalled
   let fences = 0;
   const gl = {
@@ -33,11 +38,18 @@ function makePage() {
     render: /** @type {(...all: object[]) => void} */ (() => {}),
   };
   Object.assign(globalThis, {
-    MutationObserver: function () { return nothing; },
+    MutationObserver: class {
+      /** @param {(changes: object[]) => void} call */
+      constructor(call) {
+        notify = call;
+      }
+      observe() {}
+      disconnect() {}
+    },
     requestAnimationFrame: (/** @type {() => void} */ call) => void asked.push(call),
     setInterval: () => 0,
     location: new URL("http://127.0.0.1/"),
-    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible", querySelector }),
+    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible", querySelectorAll }),
     window: globalThis,
     addEventListener() {},
     devicePixelRatio: 1,
@@ -59,7 +71,11 @@ function makePage() {
     },
     isDrawing: () => drawn < fences,
     scene,
-    told,
+    // The lab has another picture.
+    tell(/** @type {Partial<typeof picture>} */ other) {
+      Object.assign(picture, other);
+      notify([{ type: "childList", target: { nodeType: 0 }, addedNodes: [], removedNodes: [] }]);
+    },
   };
 }
 
@@ -69,6 +85,7 @@ async function pacedPage() {
   const { paceFrames } = await import("./js/scene/frames.js");
   const { nameSky } = await import("./js/scene/photograph.js");
   const { springtide } = await import("./js/core/springtide.js");
+  page.tell({});
   paceFrames(/** @type {any} */ (page.renderer), life);
   page.renderer.render = ((earlier) => (/** @type {any} */ scene, /** @type {any} */ camera) => {
     nameSky(scene); // as the first part of each frame does
@@ -103,7 +120,7 @@ test("the whole picture is shown from the end of its first frame on, also where 
   }
   page.draw(true);
   assert.equal(showsWhole(), true);
-  page.told.springtideSky = "sunset"; // another scene, whose photograph is not there
+  page.tell({ sky: "sunset" }); // another scene, whose photograph is not there
   awaitPicture();
   page.render();
   assert.equal(showsWhole(), false);
@@ -113,7 +130,7 @@ test("the whole picture is shown from the end of its first frame on, also where 
   page.render();
   page.draw(true);
   assert.equal(showsWhole(), true);
-  page.told.springtideNodes = "/sea"; // which has no node here
+  page.tell({ nodes: ["/sea"] }); // which has no node here
   awaitPicture();
   page.render();
   page.draw(true);
@@ -123,7 +140,7 @@ test("the whole picture is shown from the end of its first frame on, also where 
 
 test("another scene awaits a frame that began after it and has its nodes, which are not looked for afterwards", async () => {
   const { page, life, showsWhole, awaitPicture } = await pacedPage();
-  page.told.springtideNodes = "/sea";
+  page.tell({ nodes: ["/sea"] });
   page.render(); // a frame of the scene before
   awaitPicture();
   page.draw(true);

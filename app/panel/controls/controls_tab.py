@@ -13,6 +13,7 @@ from app.panel.controls.remedy import ControlRemedies
 from app.panel.keys import KEYS
 from app.panel.recording.files import file_name
 from app.panel.settings import SceneSettings
+from app.render.handles.channel import Channel
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import Html, faint, fill, note
 from app.scenes.contract import AnySnapshot, AnyView, Awaited, SpringParams
@@ -28,10 +29,16 @@ class ControlsTab:
     """Content of the tab, made in the open container."""
 
     def __init__(
-        self, gui: viser.GuiApi, view: AnyView, settings: SceneSettings, controls: Controls, tab: viser.GuiTabHandle
+        self,
+        gui: viser.GuiApi,
+        channel: Channel,
+        view: AnyView,
+        settings: SceneSettings,
+        controls: Controls,
+        tab: viser.GuiTabHandle,
     ) -> None:
         """controls: all but those of the view are added here."""
-        self.gui, self.view, self.settings, self.controls = gui, view, settings, controls
+        self.gui, self.channel, self.view, self.settings, self.controls = gui, channel, view, settings, controls
         self.remedies = ControlRemedies(gui, controls, settings.follow)
         gui.add_html(note(faint(Html(settings.kind.help))))
         for name in dict.fromkeys(parameter.group for parameter in controls.parameters.values()):
@@ -68,7 +75,7 @@ class ControlsTab:
 
         read = cast(Callable[[], SpringParams], lambda: self.settings.params)
         with self.gui.add_folder("Stability map", expand_by_default=False):
-            return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set_all)
+            return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set_all, self.channel)
 
     def show_settings(self) -> None:
         """Show the settings beside the controls: the help, and the button of an event to run up to."""

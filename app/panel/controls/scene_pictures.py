@@ -6,25 +6,25 @@ from importlib import resources
 
 import viser
 
-from app.render.handles.viser_inside import uuid_of
-from app.render.handles.viser_types import GuiHandle
 from app.render.markup.html import Html, fill, join
 from sim.parameters import in_words
 
 TITLE = "Scenes in pictures"
 
 
-def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str, ...]) -> None:
-    """Add a folder with a picture of each scene; a press chooses the scene in the list (js/panel/scenes.js)."""
-    uuid = uuid_of(chooser)
-    if not uuid:
-        return
+def add_scene_pictures(gui: viser.GuiApi, scenes: tuple[str, ...]) -> None:
+    """Add a folder with a picture of each scene; a press opens the scene (js/panel/buttons.js)."""
     with gui.add_folder(TITLE, expand_by_default=False):
         buttons = join(
-            fill('<button type="button" data-springtide-scene="{0}">{1}{0}</button>', in_words(name), picture(name))
+            fill(
+                '<button type="button" data-springtide-act="scene" value="{}">{}{}</button>',
+                name,
+                picture(name),
+                in_words(name),
+            )
             for name in scenes
         )
-        gui.add_html(str(fill('<div class="springtide-scenes" data-springtide-chooser="{}">{}</div>', uuid, buttons)))
+        gui.add_html(str(fill('<div class="springtide-scenes">{}</div>', buttons)))
 
 
 @functools.cache

@@ -19,7 +19,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.render.colormap import OUTCOME_COLOURS
-from app.render.handles.viser_inside import uuid_of
+from app.render.handles.channel import Channel, Message, finite
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.axis import Axis, decades, draw_axes
 from app.render.markup.html import note
@@ -98,6 +98,7 @@ class StabilityMapPanel:
         scene: StabilityMap,
         read: Callable[[], SpringParams],
         take: Callable[[Mapping[str, float]], None],
+        channel: Channel,
     ) -> None:
         """read: the parameters as set now; take: sets parameters at once, on viser's event loop."""
         self.scene, self.read, self.take = scene, read, take
@@ -105,7 +106,6 @@ class StabilityMapPanel:
             "Measure the map", hint="Measures which time steps and stiffnesses are stable; click the map to go there"
         )
         self.html = gui.add_html("")
-        self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
         self.axes: Axes | None = None
         self.rows: list[MapRow] = []
         self.problem = ""  # reason why the map is missing or incomplete
@@ -115,10 +115,7 @@ class StabilityMapPanel:
         async def _(_: ViserEvent) -> None:
             self.ask()
 
-        @self.click.on_update
-        async def _(event: ViserEvent) -> None:
-            if event.client_id is not None:
-                self.go(event.target.value)
+        channel.listen("map", list, self.on_press)
 
     def ask(self) -> None:
         """Measure again, in place of the running measurement."""
@@ -156,9 +153,15 @@ class StabilityMapPanel:
     def draw(self) -> None:
         """Show the finished rows of the map, with a dot at the present parameters; on the viewer thread."""
         axes = self.axes
-        found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
+        found = picture(axes, self.rows, self.read()) if axes is not None else ""
         problem = note(self.problem) if self.problem else ""
         self.html.content = found + problem
+
+    def on_press(self, message: Message[list[object]]) -> None:
+        """Go to the place of a press."""
+        place = finite(message.value, 2)
+        if place is not None:
+            self.go(place)
 
     def go(self, place: tuple[float, ...]) -> None:
         """Set step and stiffness to a place in the map, (0, 0) its lower left corner and (1, 1) its upper right."""
@@ -182,8 +185,8 @@ def drawn_axes(axes: Axes) -> tuple[Axis, Axis]:
     )
 
 
-def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -> str:
-    """The map as HTML. slider: the uuid of the slider that a click moves."""
+def picture(axes: Axes, rows: list[MapRow], params: SpringParams) -> str:
+    """The map as HTML; a press sends its place within the axes (`js/panel/buttons.js`)."""
     colours = list(OUTCOME_COLOURS.values())
     height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
     across, up = drawn_axes(axes)
@@ -214,18 +217,13 @@ def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -
     )
     stale = "" if axes.is_of(params) else "<br><b>Settings have changed: measure again.</b>"
     progress = "" if done else f"<br>measuring: {len(rows)} of {ROWS} rows"
-    send = (
-        "const p=new DOMPoint(event.clientX,event.clientY).matrixTransform(this.getScreenCTM().inverse());"
-        f"const x=(p.x-{LEFT})/{WIDE},y=1-(p.y-{TOP})/{HIGH};"
-        f"if(x>=0&&x<=1&&y>=0&&y<=1)window.__viserMutable.sendMessage("
-        f"{{type:'GuiUpdateMessage',uuid:'{slider}',updates:{{value:[x,y]}}}})"
-    )
     clip = f'<clipPath id="springtide-map"><rect x="{LEFT}" y="{TOP}" width="{WIDE}" height="{HIGH}"/></clipPath>'
     return (
         f'<div class="springtide-note"><svg viewBox="0 0 {PICTURE[0]:.0f} {PICTURE[1]:.0f}" '
         f'class="springtide-map" role="img" aria-label="Stability over time step and stiffness" fill="currentColor" '
-        f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
-        f'</g><g clip-path="url(#springtide-map)">'
+        f'data-springtide-act="map" data-axes="{LEFT} {TOP} {WIDE} {HIGH}">'
+        f'{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}</g>'
+        f'<g clip-path="url(#springtide-map)">'
         f'<polyline points="{limits}" fill="none" stroke="#000" stroke-width="1.6"/>'
         f'<polyline points="{right}" fill="none" stroke="#000" stroke-width="1.6" stroke-dasharray="5 3"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>'

@@ -15,9 +15,8 @@ from app.panel.recording.picture import take_picture
 from app.panel.recording.recorder import RecordedFrame, Recorder
 from app.panel.recording.recording_files import Plotted, plots_csv, plots_svg, recording_npz
 from app.panel.settings import SceneSettings
-from app.render.handles.viser_inside import uuid_of
-from app.render.handles.viser_types import GuiHandle, ViserEvent
-from app.render.markup.html import fill
+from app.render.handles.channel import Message, channel_of
+from app.render.handles.viser_types import ViserEvent
 from app.scenes.contract import AnyKind
 
 PICTURE_SIZES = {  # [pixels]
@@ -31,10 +30,10 @@ REPLAY, ARRAYS, PICTURE = f"Replay (last {REPLAY_DURATION:g} s)", "Data (.npz)",
 PLOTS, CHARTS = "Plots as CSV", "Plots as SVG"
 # The page makes clips and PNG files of plots, and has the other plots made (js/sharing/share.js).
 PAGE_BUTTONS = (
-    '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
+    '<div class="springtide-switches"><label>Plots <select data-springtide-choice="plots">'
     "<option>CSV</option><option>SVG</option><option>PNG</option></select></label>"
-    '<button type="button" data-springtide-charts>Save plots</button>'
-    '<button type="button" data-springtide-clip>Record clip</button></div>'
+    '<button type="button" data-springtide-act="plots">Save plots</button>'
+    '<button type="button" data-springtide-act="clip">Record clip</button></div>'
 )
 
 Make = Callable[[viser.ClientHandle], tuple[str, bytes]]  # name and content of a file
@@ -56,6 +55,7 @@ class Files:
         self.server, self.settings, self.recorder, self.plots = server, settings, recorder, plots
         self.make_replay = make_replay
         self.busy = threading.Lock()  # one file at a time
+        channel_of(server).listen("plots", str, self.make_plots)
 
     def add_run(self) -> None:
         """Add the files of the run."""
@@ -64,19 +64,23 @@ class Files:
     def add(self) -> None:
         """Add the other files."""
         gui = self.server.gui
-        makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS), visible=False)
-        makers.on_click(self.on_file)
-        makers.visible = not uuid_of(makers)  # the page presses them
-        gui.add_html(str(fill(PAGE_BUTTONS, uuid_of(makers))))
+        gui.add_html(PAGE_BUTTONS)
         self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
         self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
         gui.add_button_group("", (PICTURE,)).on_click(self.on_file)
 
     async def on_file(self, event: ViserEvent) -> None:
+        """Make the file of a button."""
+        if event.client is not None:
+            self.make(event.target.value, event.client)
+
+    def make_plots(self, message: Message[str]) -> None:
+        """Make the plots in the form that a page asks for."""
+        if message.value in (PLOTS, CHARTS):
+            self.make(message.value, message.client)
+
+    def make(self, name: str, client: viser.ClientHandle) -> None:
         """Make a file in a separate thread, and send it to the requesting browser."""
-        client = event.client
-        if client is None:
-            return
         settings, plots, kind = self.settings, self.plots, self.settings.kind
         makers: dict[str, Make] = {
             PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode("utf-8-sig")),
@@ -86,9 +90,9 @@ class Files:
             ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
         }
         if not self.busy.acquire(blocking=False):
-            client.add_notification(event.target.value, "Another file is still being created.", auto_close_seconds=10.0)
+            client.add_notification(name, "Another file is still being created.", auto_close_seconds=10.0)
             return
-        make, work = makers[event.target.value], LongWork(client, event.target.value, "Couldn't create the file")
+        make, work = makers[name], LongWork(client, name, "Couldn't create the file")
         work.start(lambda: self.send(make, client), self.busy.release)
 
     def send(self, make: Make, client: viser.ClientHandle) -> str:

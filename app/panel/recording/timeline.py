@@ -3,28 +3,22 @@
 Actions of pages come on viser's event loop; `update` runs on the viewer's thread.
 """
 
-import json
-import math
 import time
 from collections.abc import Callable
-
-import viser
 
 from app.messages import Pause, Play
 from app.panel.recording.recorder import RATES, Recorder
 from app.panel.settings import SceneSettings
-from app.render.handles.viser_inside import uuid_of
-from app.render.handles.viser_types import GuiHandle, ViserEvent
-from app.render.markup.html import fill
+from app.render.handles.channel import Channel, Message, finite
 
 SPAN_INTERVAL = 0.5  # [s] between two updates of the time line's ends
 
 
 class Timeline:
-    """State of the recording for the pages, and the hidden field through which they send actions."""
+    """State of the recording for the pages, and their actions."""
 
-    def __init__(self, gui: viser.GuiApi, recorder: Recorder, settings: SceneSettings) -> None:
-        self.recorder, self.settings = recorder, settings
+    def __init__(self, channel: Channel, recorder: Recorder, settings: SceneSettings) -> None:
+        self.channel, self.recorder, self.settings = channel, recorder, settings
         self.span_at = 0.0
         self.told: tuple[object, ...] = ()  # known to the pages: time of the shown frame, whether it plays, and the run
         self.is_running = False  # the lab, at the last update
@@ -33,22 +27,16 @@ class Timeline:
             "show": self.show, "step": self.step, "play": self.play, "live": self.go_live,
             "continue": self.resume, "rate": self.set_rate, "loop": self.set_loop,
         }  # fmt: skip
-        self.inbox: GuiHandle = gui.add_text("Time line", "", multiline=True, visible=False)
-        self.inbox.on_update(self.on_inbox)
-        self.state = gui.add_html("")
+        channel.listen("time", list, self.act)
 
-    async def on_inbox(self, _: ViserEvent) -> None:
-        """Take a page's message: its own word, which is new each time, an action, its number, and the run's number.
+    def act(self, message: Message[list[object]]) -> None:
+        """Carry out a page's action: its name, a number, and the number of the run.
 
         A time of another run than the recorded one is ignored.
         """
-        words = self.inbox.value.split()
-        try:
-            action, number, run = self.actions[words[1]], float(words[2]), int(words[3])
-        except (LookupError, ValueError):
-            return
-        if math.isfinite(number) and run == self.recorder.line.number:
-            action(number)
+        action, numbers = self.actions.get(str(next(iter(message.value), ""))), finite(message.value[1:], 2)
+        if action is not None and numbers is not None and numbers[1] == self.recorder.line.number:
+            action(numbers[0])
             self.recorder.wake()
 
     def hold(self) -> None:
@@ -106,7 +94,6 @@ class Timeline:
         self.span_at, self.told = now, present
         low, high = recorder.span()
         state = {
-            "inbox": uuid_of(self.inbox),
             "run": recorder.line.number,
             "low": round(low, 3),
             "high": round(high, 3),
@@ -118,7 +105,7 @@ class Timeline:
             "loops": recorder.loops,
             "size": size_words(recorder.memory.bytes),
         }
-        self.state.content = str(fill('<span data-springtide-time="{}"></span>', json.dumps(state)))
+        self.channel.tell("time", state)
 
 
 def size_words(size: float) -> str:

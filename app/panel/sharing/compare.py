@@ -1,16 +1,13 @@
-"""The folder "Compare side by side", and the line that the page with the panes (`js/beside.html`) reads."""
+"""The folder "Compare side by side", and the state of the panes for their page (`js/beside`)."""
 
-# pyright: reportPrivateUsage=false
-
-import json
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import viser
 
 from app.panel.settings import SceneSettings
-from app.render.handles.viser_inside import uuid_of
-from app.render.handles.viser_types import GuiHandle, ViserEvent
+from app.render.handles.channel import Channel, Message
+from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import fill, join, note
 from app.scenes.comparisons import COMPARISONS
 from app.scenes.setups import Setup
@@ -33,19 +30,12 @@ class ComparisonCalls(NamedTuple):
 
 
 class CompareFolder:
-    """The folder, and a line that only the page reads."""
+    """The folder, and the state of the panes for the page."""
 
-    def __init__(self, gui: viser.GuiApi, buttons: GuiHandle, settings: SceneSettings, beside: ComparisonCalls) -> None:
-        """buttons: that play, step and reset. settings: with the presets to compare with.
-
-        The line and its button are outside the tabs: the page reads them even if no tab was opened.
-        """
-        self.settings, self.beside, self.buttons = settings, beside, buttons
-        self.shown: tuple[PaneWords, ...] | None = None
-        self.line = gui.add_html("")
-        self.end: GuiHandle = gui.add_button("One lab again", visible=False)
-        self.end.on_click(self.on_end)
-        self.gui = gui
+    def __init__(self, gui: viser.GuiApi, channel: Channel, settings: SceneSettings, beside: ComparisonCalls) -> None:
+        """settings: with the presets to compare with."""
+        self.gui, self.channel, self.settings, self.beside = gui, channel, settings, beside
+        channel.listen("panes", str, self.act)
 
     def add(self) -> None:
         """Add the folder, in the open container."""
@@ -69,23 +59,14 @@ class CompareFolder:
         if event.client_id is not None and name in self.settings.presets:
             self.beside.compare([self.settings.setup_of(name)], False)
 
-    async def on_end(self, event: ViserEvent) -> None:
+    def act(self, message: Message[str]) -> None:
         """Show the lab alone again."""
-        if event.client_id is not None:
+        if message.value == "end":
             self.beside.end()
 
     def update(self) -> None:
-        """Update the list of presets and the line for the page."""
+        """Update the list of presets, and the panes for the page."""
         names = self.settings.presets
         if self.choice.options != names:
             self.choice.options = names
-        panes = self.beside.panes()
-        if panes == self.shown:
-            return
-        self.shown = panes
-        said = json.dumps([pane._asdict() for pane in panes])
-        words = fill(
-            '<span data-springtide-beside="{}" data-buttons="{}" data-end="{}"></span>',
-            said, uuid_of(self.buttons), uuid_of(self.end),
-        )  # fmt: skip
-        self.line.content = str(words)
+        self.channel.tell("panes", [pane._asdict() for pane in self.beside.panes()])

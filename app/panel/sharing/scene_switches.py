@@ -17,7 +17,6 @@ from app.scenes.comparisons import COMPARISONS
 from app.scenes.setups import Setup
 
 SHOWN_TIME = 5.0  # [s] for which a change is shown
-PAGES = 100  # whose last text is remembered
 UNDO = "Undo this change"
 
 
@@ -39,7 +38,8 @@ class SceneSwitch(NamedTuple):
         what = fill("<b>{}</b>{}", title, f" ({name})" if name else "")
         return note(
             fill(
-                '<span data-springtide-changer="{}"><span class="springtide-own">You switched everyone to {}.</span>'
+                '<span class="springtide-switch" data-page="{}">'
+                '<span class="springtide-own">You switched everyone to {}.</span>'
                 '<span class="springtide-others">Someone else switched everyone to {}.</span></span>',
                 self.page, what, what,
             )
@@ -47,18 +47,10 @@ class SceneSwitch(NamedTuple):
 
 
 class SceneSwitches:
-    """The last change of one server, and the last text that each page has sent it."""
+    """The last change of one server."""
 
     def __init__(self) -> None:
         self.latest: SceneSwitch | None = None
-        self.taken: dict[str, str] = {}  # word of a page -> number of its last text, for the last PAGES that sent one
-
-    def take_text(self, page: str, number: str) -> bool:
-        """Note the number of a text from a page; False if it is that of the last one."""
-        last, self.taken[page] = self.taken.pop(page, None), number
-        if len(self.taken) > PAGES:
-            del self.taken[next(iter(self.taken))]
-        return last != number
 
     def shown_in(self, scene: str) -> SceneSwitch | None:
         """The change to show in the panel of a scene; its time begins in the panel of the opened scene."""

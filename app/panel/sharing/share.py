@@ -3,7 +3,6 @@
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
 
-import itertools
 import threading
 import time
 
@@ -20,6 +19,7 @@ from app.panel.sharing.compare import ComparisonCalls
 from app.panel.sharing.scene_switches import SceneSwitch, SceneSwitches, SwitchNotice
 from app.panel.workbook.task_setups import read_link
 from app.render.cameras import place_camera
+from app.render.handles.channel import Message, channel_of
 from app.render.handles.viser_inside import uuid_of
 from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import Html, faint, fill, join, lines, note
@@ -40,14 +40,22 @@ from app.scenes.setups import (
 )
 
 CONFIRMED_TIME = 2.0  # [s] for which a button confirms its action
-COPY, SAVE = "Copy link", "Save set-up"
+# js/panel/buttons.js sends their presses.
+SET_UP_BUTTONS = (
+    '<div class="springtide-switches"><button type="button" data-springtide-act="link">Copy link</button>'
+    '<button type="button" data-springtide-act="save">Save set-up</button></div>'
+)
+LOAD_BUTTON = (
+    '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
+    '<input type="file" accept=".json,.html,.npz"></label></div>'
+)
 KEEP_CURVES, DROP_CURVES = "Keep curves", "Drop curves"
 KEEP, REMOVE = "Keep as preset", "Remove preset"
 COMPARE = "?compare="  # begins the address of a ready-made comparison
 
 
 class Share:
-    """The tab, and the hidden field through which a page sends its address or a file."""
+    """The tab. It opens queries of addresses, and files, for pages."""
 
     def __init__(
         self,
@@ -71,16 +79,15 @@ class Share:
         gui = server.gui
         self.files = Files(server, settings, recorder, plots, make_replay)
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
-        self.link_numbers = itertools.count(1)
         # Identity of buttons -> the buttons, their names, and the time [s] until which they confirm.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with head:
             self.notice = SwitchNotice(gui, settings.kind.name, changes, self.restore, self.is_undone)
-        self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
-        self.inbox.on_update(self.on_inbox)
-        holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
-        gui.add_html(str(holder))
+        self.channel = channel_of(server)
+        self.channel.listen("open", str, self.open)
+        self.channel.listen("link", str, self.make_link)
+        self.channel.listen("save", str, self.save)
 
     def add(self) -> None:
         """Add the controls, in the open container."""
@@ -97,12 +104,9 @@ class Share:
             self.note = gui.add_text(
                 "Note in the file", "", hint=f"Saved with the set-up; at most {MAX_NOTE} characters"
             )
-            gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
+            gui.add_html(SET_UP_BUTTONS)
             gui.add_button_group("", (KEEP,)).on_click(self.on_own)
-            gui.add_html(
-                '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
-                '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
-            )
+            gui.add_html(LOAD_BUTTON)
             self.remove: GuiHandle = gui.add_button_group("", (REMOVE,), visible=bool(self.settings.own))
             self.remove.on_click(self.on_own)
             self.add_line("This set-up")
@@ -133,18 +137,17 @@ class Share:
                     buttons.options = options
                     del self.confirmed[identity]
 
-    async def on_inbox(self, event: ViserEvent) -> None:
-        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with its word and a number.
+    def open(self, message: Message[str]) -> None:
+        """Open the query of an address ("?scene=...") or the text of a file ("{...}") for a page.
 
-        A page sends the last text to the next panel too: a closed panel takes none.
+        A closed panel takes nothing: the page asks the next one.
         """
-        (sender, _, text), client = self.inbox.value.partition("\n"), event.client
-        page, _, number = sender.partition(" ")
-        if not text or client is None or not self.settings.is_open or not self.changes.take_text(page, number):
+        client = message.client
+        if not self.settings.is_open:
             return
-        self.inbox.value = ""  # so that the same text can come again
+        self.channel.answer(message, "taken")
         try:
-            subject = self.read(text)
+            subject = self.read(message.value)
             is_shown = isinstance(subject, Setup) and self.settings.shows(subject)
         except ValueError as reason:  # also of a file that cannot have the set-up's changes
             self.refuse(client, str(reason))
@@ -162,7 +165,7 @@ class Share:
         elif isinstance(subject, str) and self.beside is None:
             return  # a lab beside another opens no comparison
         else:
-            change = self.change(subject, page)
+            change = self.change(subject, message.page)
             try:
                 self.show(subject, client.client_id)
             except ValueError as reason:  # of a file of the same name
@@ -221,26 +224,20 @@ class Share:
         if client is not None and setup.camera is not None:
             place_camera(client.camera, *setup.camera)
 
-    async def on_link(self, event: ViserEvent) -> None:
-        """Show the link, or save the set-up, with the camera of the requesting browser."""
-        client = event.client
-        if client is None:
-            return
-        settings, camera = self.settings, camera_of(client)
-        if event.target.value == COPY:
-            query = write_query(settings.kind, settings.params, settings.loaded, camera)
-            # The number makes a second link news to the page, which copies it and says so (js/sharing/copy.js).
-            link = fill(
-                '<a class="springtide-link" data-springtide-link="{}" data-springtide-number="{}" href="{}">{}</a>',
-                query, next(self.link_numbers), query, query,
-            )  # fmt: skip
-            self.say("This set-up", join((link, not_in_link(settings.params))))
-            return
-        if event.target.value != SAVE:
-            return
+    def make_link(self, message: Message[str]) -> None:
+        """Show the link to the view of a browser, which copies it from the answer (js/sharing/copy.js)."""
+        settings = self.settings
+        query = write_query(settings.kind, settings.params, settings.loaded, camera_of(message.client))
+        link = fill('<a class="springtide-link" data-query="{}" href="{}">{}</a>', query, query, query)
+        self.say("This set-up", join((link, not_in_link(settings.params))))
+        self.channel.answer(message, query)
+
+    def save(self, message: Message[str]) -> None:
+        """Save the set-up, with the camera of the asking browser."""
+        settings, client = self.settings, message.client
         try:
             name, words = self.name.value.strip(), self.note.value.strip()
-            text = write_file(settings.kind, settings.params, settings.loaded, camera, name=name, note=words)
+            text = write_file(settings.kind, settings.params, settings.loaded, camera_of(client), name=name, note=words)
         except ValueError as reason:
             self.say("This set-up", str(reason))
             return

@@ -22,6 +22,7 @@ interface Springtide {
   showsWhole?: () => boolean;
   contexts?: number;
   beside?: boolean;
+  channel?: { topicState: (topic: string) => any; say: (topic: string, value: unknown) => boolean };
 }
 
 interface Line {
@@ -167,6 +168,8 @@ declare namespace viser {
     distance: number;
     azimuthAngle: number;
     getTarget(into: three.Vector3): three.Vector3;
+    getPosition(into: three.Vector3): three.Vector3;
+    setLookAt(x: number, y: number, z: number, toX: number, toY: number, toZ: number, smooth: boolean): void;
     rotatePolarTo(angle: number, smooth: boolean): void;
     moveTo(x: number, y: number, z: number, smooth: boolean): void;
   }
@@ -379,6 +382,8 @@ declare namespace three {
   }
   interface Camera extends Object3D {
     aspect: number;
+    fov: number; // [degrees]
+    updateProjectionMatrix(): void;
     view: View | null;
     projectionMatrix: Matrix4;
     projectionMatrixInverse: Matrix4;

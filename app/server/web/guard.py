@@ -32,6 +32,7 @@ import viser
 import websockets.asyncio.server
 from websockets.http11 import Request, Response
 
+from app.render.handles.channel import is_to_channel
 from app.render.handles.viser_inside import (
     UNKNOWN,
     Handler,
@@ -54,7 +55,7 @@ from app.server.web.rate_limit import LIMIT, RateLimit, put_small_first
 MAX_NUMBER = 1e6  # largest number allowed in a message
 MAX_LENGTH = 1000  # of a text, or of a list
 MAX_FIELD_LENGTH = 64  # of a text typed into a field
-MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page
+MAX_TEXT_LENGTH = 31_000  # of a field of several lines: a set-up file of 5,000 characters as a text of JSON
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_REPORTED = 5  # kinds of refused pages in the terminal
 MAX_WAITING = 64  # waiting messages of one browser
@@ -354,8 +355,14 @@ class Intake:
     then: a page may send the link in its address first.
     """
 
-    def __init__(self, message_filter: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
-        self.message_filter, self.handlers = message_filter, handlers
+    def __init__(
+        self,
+        message_filter: Callable[[ViserMessage], ViserMessage],
+        handlers: "list[Handler]",
+        is_to_channel: Callable[[str], bool] = lambda uuid: False,
+    ) -> None:
+        """is_to_channel: true for the field of the channel, through which all topics go: each message counts."""
+        self.message_filter, self.handlers, self.is_to_channel = message_filter, handlers, is_to_channel
         self.waiting: dict[MergeKey, ViserMessage] = {}
         self.unmerged = 0  # counts messages that are never merged, to give each a key
         self.turn: asyncio.Task[None] | None = None
@@ -368,7 +375,7 @@ class Intake:
             self.message_filter(message)  # refused and counted
             return
         key = merge_key(message)
-        if key is None:
+        if key is None or (kind_of(message) == "GuiUpdateMessage" and self.is_to_channel(message.uuid)):
             self.unmerged += 1
             key = (kind_of(message), self.unmerged)
         self.waiting.pop(key, None)
@@ -416,7 +423,7 @@ def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> boo
     intakes: dict[ClientId, Intake] = {}
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
-        intakes[client] = intake = Intake(message_filter, handlers)
+        intakes[client] = intake = Intake(message_filter, handlers, lambda uuid: is_to_channel(server, uuid))
         if name := PAGE.get(""):
             message_filter.pages[client] = name
         return intake.queue

@@ -16,7 +16,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from app.render.client_page import with_ours
-from app.render.scripts import BEFORE, PAGE
+from app.render.scripts import BEFORE, BESIDE, PAGE, tags
 
 ALIVE_PATH = "/springtide-alive"  # requested by the page, to check that the server answers
 # The answer to that: another name is another server, which knows nothing of the page. A second line is the reason why a
@@ -34,7 +34,7 @@ def own_answer(request: Request, *, shared: bool, refused: Callable[[str], str])
     """
     path, _, query = request.path.partition("?")
     if path == PANES_PATH:
-        body = (resources.files("app.render") / "js" / "beside.html").read_bytes()
+        body = panes_page()
         headers = Headers({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body))})
         return Response(HTTPStatus.OK, "OK", headers, body)
     if path != ALIVE_PATH:
@@ -45,6 +45,13 @@ def own_answer(request: Request, *, shared: bool, refused: Callable[[str], str])
     if shared:
         headers["Access-Control-Allow-Origin"] = "*"
     return Response(HTTPStatus.OK, "OK", headers, body)
+
+
+@functools.cache
+def panes_page() -> bytes:
+    """The page that shows several labs side by side."""
+    page = (resources.files("app.render") / "js" / "beside" / "page.html").read_text("utf-8")
+    return page.replace("</body>", f"{tags(BESIDE)}</body>", 1).encode()
 
 
 def with_cover(request: Request, response: Response | None) -> Response | None:

@@ -21,6 +21,7 @@ from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
 from sim.mooring import read_moordyn
 from tests import coroutines
+from tests.app.channels import say, state_of
 from tests.waiting import wait_for
 
 PATH = Path(__file__).parents[2] / "sim/mooring/moordyn/files/shared_line.txt"
@@ -181,9 +182,7 @@ def message(viewer: Viewer, text: str) -> list[str]:
     client = SimpleNamespace(
         client_id=1, add_notification=lambda title, body, **how: told.append(body), camera=SimpleNamespace()
     )
-    sharing = viewer.panel.share
-    sharing.inbox.value = f"page {next(NUMBERS)}\n{text}"
-    coroutines.run(sharing.on_inbox(SimpleNamespace(client=client)))
+    say(viewer.panel.share.channel, "open", text, client=client)
     return told
 
 
@@ -191,7 +190,7 @@ def test_a_scene_that_is_shown_again_has_its_file_as_it_was_changed(panel: Viewe
     kind = scene_named("mooring")
     for way, params in (("Back", edited()), ("list", FILE), ("set-up", edited())):
         panel.settings.show_setup(read_file(write_file(kind, params)), None)
-        query = panel.panel.head.here.content.split('"')[1]  # that the page keeps for Back and Forward
+        query = state_of(panel, "acts")["here"]  # that the page keeps for Back and Forward
         assert message(panel, "?scene=rope") == []
         wait_for(lambda: panel.is_open and panel.settings.kind.name == "rope")
         if way == "list":

@@ -11,7 +11,6 @@ import pytest
 from PIL import Image
 
 from app.panel.controls.scene_pictures import add_scene_pictures, picture
-from app.panel.head import add_scene_chooser
 from app.scenes import NAMES
 from sim.parameters import in_words
 
@@ -31,11 +30,10 @@ def test_a_scene_has_a_small_picture(file: str) -> None:
     assert Image.open(io.BytesIO(content)).size == (160, 100)
 
 
-def test_each_button_names_its_scene_and_shows_its_picture(server: Any) -> None:
-    chooser = add_scene_chooser(server.gui, tuple(NAMES), "rope", lambda name: None)
+def test_each_button_names_its_scene_and_shows_its_picture() -> None:
     found: list[str] = []
     gui: Any = SimpleNamespace(add_folder=lambda *_, **__: contextlib.nullcontext(), add_html=found.append)
-    add_scene_pictures(gui, chooser, tuple(NAMES))
+    add_scene_pictures(gui, tuple(NAMES))
     for name in NAMES:
-        title = in_words(name)
-        assert f'<button type="button" data-springtide-scene="{title}">{picture(name)}{title}</button>' in found[0]
+        content = f"{picture(name)}{in_words(name)}"
+        assert f'<button type="button" data-springtide-act="scene" value="{name}">{content}</button>' in found[0]

@@ -5,26 +5,27 @@ import dataclasses
 import re
 from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from app.render import injection
+from app.render.handles.channel import Channel, channel_of
 from app.render.injection import ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
 from app.render.scripts import SHARED, modules
 from app.render.skies import light_scene
 from sim.ocean.fluids.oil_film import BAND_WIDTH, BANDS
+from tests.app.channels import say
 
 
 class FakeServer:
-    """The parts of a viser server that the injector uses, and the newest field that pages report to."""
+    """The parts of a viser server that the injector uses, and reports of pages."""
 
     def __init__(self) -> None:
         self.clients: dict[int, Any] = {}
         self._websock_server = self.gui = self
-        self.shown: list[str] = []
 
     def on_client_disconnect(self, callback: Callable[[Any], Any]) -> None:
         self.left = callback
@@ -33,19 +34,29 @@ class FakeServer:
         return dict(self.clients)
 
     def add_text(self, label: str, value: str, **look: Any) -> Any:
-        self.inbox = SimpleNamespace(value=value, _impl=SimpleNamespace(uuid="field"))
-        self.inbox.on_update = lambda callback: setattr(self, "reported", callback)
-        return self.inbox
+        return SimpleNamespace(value=value, on_update=lambda call: None, _impl=SimpleNamespace(uuid="field"))
 
     def add_html(self, content: str, order: float) -> Any:
-        self.shown.append(content)
-        self.field = SimpleNamespace(content=content)
-        return self.field
+        return SimpleNamespace(content=content)
 
-    def report(self, client: int, *names: str) -> None:
+    def report(self, client: int, *names: str, scene: int | None = None, is_whole: bool = False) -> None:
         """A page reports the nodes that it draws with their shader."""
-        self.inbox.value = "\n".join((f"page {client}", *names))
-        asyncio.run(self.reported(SimpleNamespace(client_id=client)))
+        number = self.picture["scene"] if scene is None else scene
+        value = {"scene": number, "isWhole": is_whole, "nodes": list(names)}
+        say(self.channel, "drawn", value, client=SimpleNamespace(client_id=client))
+
+    @property
+    def channel(self) -> Channel:
+        return channel_of(self)  # type: ignore[arg-type]
+
+    @property
+    def picture(self) -> dict[str, Any]:
+        """The parts of a whole picture, as pages have them."""
+        return cast(dict[str, Any], self.channel.state_of("picture"))
+
+    def begin_scene(self, injector: ShaderInjector) -> None:
+        self.channel.restart()
+        injector.restart()
 
 
 @pytest.fixture
@@ -72,30 +83,29 @@ def test_a_shader_is_active_while_every_browser_reports_it(server: FakeServer, i
 
 
 def test_the_page_is_told_the_nodes_of_a_whole_picture(server: FakeServer, injector: ShaderInjector) -> None:
-    told = lambda: re.findall(r'data-springtide-nodes="([^"]*)"', server.field.content)[0].split()  # noqa: E731
-    assert told() == []
+    assert server.picture["nodes"] == []
     injector.watch("/sea")
     injector.watch("/rope")
-    assert told() == ["/sea", "/rope"]
+    assert server.picture["nodes"] == ["/sea", "/rope"]
     injector.unwatch("/sea")
-    assert told() == ["/rope"]
-    injector.restart(server)  # type: ignore[arg-type]
-    assert told() == []
+    assert server.picture["nodes"] == ["/rope"]
+    server.begin_scene(injector)
+    assert server.picture["nodes"] == []
 
 
 def test_the_page_is_told_the_sky_before_it_is_sent() -> None:
     """The page names a sky as it arrives."""
     server = FakeServer()
     shaders = injection.injector_of(server)  # type: ignore[arg-type]
-    told = lambda: re.findall(r'data-springtide-sky="([^"]*)"', server.field.content)  # noqa: E731
-    assert told() == [""]
+    assert server.picture["sky"] == ""
     sent: list[Any] = []
-    server.scene = SimpleNamespace(configure_environment_map=lambda name, **how: sent.append((name, how, told())))
+    sky = lambda: server.picture["sky"]  # noqa: E731
+    server.scene = SimpleNamespace(configure_environment_map=lambda name, **how: sent.append((name, how, sky())))
     light_scene(server, "dawn", environment_intensity=0.5)  # type: ignore[arg-type]
-    assert sent == [("dawn", {"environment_intensity": 0.5}, ["dawn"])]
+    assert sent == [("dawn", {"environment_intensity": 0.5}, "dawn")]
     assert shaders is not None
-    shaders.restart(server)  # type: ignore[arg-type]
-    assert told() == [""]
+    server.begin_scene(shaders)
+    assert server.picture["sky"] == ""
 
 
 def test_a_browser_that_left_is_forgotten(server: FakeServer, injector: ShaderInjector) -> None:
@@ -109,15 +119,17 @@ def test_a_browser_that_left_is_forgotten(server: FakeServer, injector: ShaderIn
     assert injector.is_active("/sea") is None
 
 
-def test_each_scene_has_a_field_and_nothing_reported_before_counts(
-    server: FakeServer, injector: ShaderInjector
-) -> None:
+def test_nothing_reported_of_a_scene_counts_in_the_next_one(server: FakeServer, injector: ShaderInjector) -> None:
     server.clients = {1: None}
-    server.report(1, "/sea")
-    injector.restart(server)  # type: ignore[arg-type]
+    server.report(1, "/sea", is_whole=True)
+    assert injector.whole == {1}
+    before = server.picture["scene"]
+    server.begin_scene(injector)
     injector.watch("/sea")
-    assert injector.is_active("/sea") is None
-    assert [re.findall('shaders="([^"]*)"', words) for words in server.shown] == [["field"]] * 2
+    server.report(1, "/sea", scene=before, is_whole=True)  # on its way when the scene began
+    assert (injector.is_active("/sea"), injector.whole) == (None, set())
+    server.report(1, "/sea")
+    assert (injector.is_active("/sea"), injector.whole) == (True, set())
 
 
 def test_a_browser_that_never_reports_counts_as_one_without_shaders(

@@ -10,12 +10,12 @@ from urllib.parse import unquote
 import pytest
 
 from app.render import scripts
-from app.render.scripts import IMPORTED, PAGE, REPLAY, SHARED, import_map, modules
+from app.render.scripts import BESIDE, IMPORTED, PAGE, REPLAY, SHARED, import_map, modules
 
 ROOT = Path(__file__).parents[3]
 BROWSERS = ("Chrome", "Edge", "Firefox", "Safari")
 # Rooms from left to right: none imports a room to its left.
-ORDER = ("page", "sharing", "panel", "scene", "sea", "shading", "core")
+ORDER = ("beside", "page", "sharing", "panel", "scene", "sea", "shading", "core")
 
 
 def imports_of(path: str) -> list[str]:
@@ -48,7 +48,7 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
 
 
 def test_every_module_is_started_by_an_entry() -> None:
-    reached = [PAGE, REPLAY]
+    reached = [PAGE, REPLAY, BESIDE]
     for path in reached:
         reached += [target for target in imports_of(path) if target not in reached]
     assert set(reached) == set(modules())

@@ -3,7 +3,7 @@
 import asyncio
 import dataclasses
 import http.client
-import itertools
+import json
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -26,6 +26,7 @@ from app.server.preparation import Preparation
 from app.server.viewer import Viewer
 from app.server.web.access import OWN_PAGES_ONLY, Access
 from tests import coroutines
+from tests.app import channels
 from tests.app.server.web.test_guard import say
 from tests.app.server.web.test_transport import decoded
 from tests.waiting import wait_for
@@ -276,7 +277,7 @@ def test_a_scene_that_is_asked_for_ends_a_comparison_that_is_being_opened(monkey
 def line_of(viewer: Viewer) -> str:
     """What the page with the panes reads."""
     assert viewer.panel.compare is not None
-    return viewer.panel.compare.line.content
+    return json.dumps(viewer.panel.compare.channel.state_of("panes"), ensure_ascii=False)
 
 
 def test_another_scene_in_a_pane_keeps_the_clock() -> None:
@@ -323,11 +324,9 @@ def test_an_address_and_the_panel_open_a_comparison() -> None:
     viewer = Viewer("127.0.0.1", 0)
     said: list[str] = []
     client = SimpleNamespace(client_id=1, add_notification=lambda title, reason, **how: said.append(reason))
-    numbers = itertools.count()
 
     def inbox(text: str) -> None:
-        viewer.panel.share.inbox.value = f"page {next(numbers)}\n{text}"
-        coroutines.run(viewer.panel.share.on_inbox(SimpleNamespace(client=client)))
+        channels.say(viewer.panel.share.channel, "open", text, client=client)
 
     try:
         viewer.open("rope")
@@ -343,7 +342,7 @@ def test_an_address_and_the_panel_open_a_comparison() -> None:
         wait_for(lambda: "Leapfrog" in line_of(viewer))
         compare = viewer.panel.compare
         assert compare is not None
-        coroutines.run(compare.on_end(SimpleNamespace(client_id=1)))
+        channels.say(viewer.panel.share.channel, "panes", "end")
         wait_for(lambda: viewer.comparison is None and "[]" in line_of(viewer))
         compare.choice.value = "Stiff rope"
         coroutines.run(compare.on_start(SimpleNamespace(client_id=1)))

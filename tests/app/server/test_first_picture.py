@@ -7,10 +7,13 @@ from typing import Any, cast
 import msgspec
 import pytest
 
-from app.render.injection import WHOLE, ShaderInjector, injector_of
+from app.render.handles.channel import channel_of
+from app.render.handles.viser_inside import uuid_of
+from app.render.injection import ShaderInjector, injector_of
 from app.server.first_picture import PATIENCE, FirstPicture
 from app.server.viewer import Viewer
 from tests import coroutines
+from tests.app.channels import text_of
 from tests.app.server.web.test_beat import page
 from tests.stress.clients import CAMERA
 from tests.waiting import wait_for
@@ -61,18 +64,22 @@ def test_a_run_stands_at_its_start_until_the_page_has_the_whole_picture() -> Non
         injector = injector_of(viewer.server)
         assert injector is not None
 
-        def report(words: str) -> dict[str, Any]:
-            return {"type": "GuiUpdateMessage", "uuid": injector._inbox, "updates": {"value": words}}
+        def report(*, is_whole: bool, scene: int = 0) -> dict[str, Any]:
+            channel = channel_of(viewer.server)
+            value = {"scene": scene or channel.state_of("picture")["scene"], "isWhole": is_whole, "nodes": ["/rope"]}
+            uuid = uuid_of(channel.field)
+            return {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": text_of("drawn", value)}}
 
         async def visit() -> tuple[float, float]:
             async with page(viewer.port, "/?page=a") as client:
                 await client.send(msgspec.msgpack.encode(CAMERA))
-                await client.send(msgspec.msgpack.encode(report("a\n/rope")))
+                await client.send(msgspec.msgpack.encode(report(is_whole=False)))
+                await client.send(msgspec.msgpack.encode(report(is_whole=True, scene=-1)))  # of another scene
                 end = time.monotonic() + 2.0
                 while time.monotonic() < end:
                     await client.recv()
                 waited = viewer.scene.time
-                await client.send(msgspec.msgpack.encode(report(f"a{WHOLE}\n/rope")))
+                await client.send(msgspec.msgpack.encode(report(is_whole=True)))
                 end = time.monotonic() + 60.0
                 while time.monotonic() < end and viewer.scene.time == 0.0:
                     await client.recv()

@@ -1,6 +1,8 @@
 """A replay: one page that holds the frames, the parameters and the plots."""
 
 import base64
+import html
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -62,7 +64,8 @@ def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, pag
     kind, frames, _ = recorded
     assert f"<title>Springtide: {kind.title}</title>" in page
     assert page.index(f"Opening {kind.title} …") < page.index("__VISER_EMBED_DATA__=")  # the cover is seen first
-    assert '<span data-springtide-sky="studio" data-springtide-nodes="/rope"></span>' in page
+    state = html.unescape(re.findall(r'<span data-springtide-topic="picture" data-value="([^"]*)">', page)[0])
+    assert json.loads(state) == {"scene": 1, "sky": "studio", "nodes": ["/rope"]}
     assert LIGHT_SKY.css in page  # which has no style sheet of ours
     assert f"t = {frames[0].time:.2f} to {frames[-1].time:.2f} s" in page
     about = page[page.index("springtide-about") :]

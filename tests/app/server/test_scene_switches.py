@@ -1,26 +1,30 @@
 """Links of one browser of a shared lab: the last one wins, all see it for some seconds, and it can be undone."""
 
 import asyncio
-import itertools
 import types
+from typing import Any
 from unittest.mock import Mock
 
 import pytest
 
-from app.panel.sharing.scene_switches import PAGES, SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
+from app.panel.sharing.scene_switches import SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
 from tests import coroutines
+from tests.app.channels import text_of
 from tests.app.server.visitors import Visitor, until, visitor
 
-NUMBERS = itertools.count()  # of texts from a page
+
+def field_of(lab: Viewer) -> Any:
+    """The field for messages of pages."""
+    return lab.panel.share.channel.field
 
 
 async def follow(browser: Visitor, query: str) -> None:
     """Follow a link, and wait until the line about it is drawn."""
-    await browser.send(browser.lab.panel.share.inbox, f"page{browser.client} {next(NUMBERS)}\n{query}")
-    await until(lambda: f'data-springtide-changer="page{browser.client}"' in shown(browser.lab))
+    await browser.send(field_of(browser.lab), text_of("open", query, page=f"page{browser.client}"))
+    await until(lambda: f'data-page="page{browser.client}"' in shown(browser.lab))
 
 
 async def undo(browser: Visitor) -> None:
@@ -67,7 +71,7 @@ def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pyte
 
     async def follow_links() -> None:
         async with visitor(lab) as first:
-            await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9")  # nobody else is there
+            await first.send(field_of(lab), text_of("open", "?scene=rope&points=9"))  # nobody else is there
             await until(lambda: vars(lab.settings.params)["points"] == 9)
             assert lab.changes.latest is None
             async with visitor(lab) as second:
@@ -92,7 +96,7 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer, monkey
 
     async def undo_links() -> None:
         async with visitor(lab) as first, visitor(lab) as second:
-            await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9&stiffness=500")
+            await first.send(field_of(lab), text_of("open", "?scene=rope&points=9&stiffness=500"))
             await until(lambda: vars(lab.settings.params)["points"] == 9 and shown(lab))
             before = lab.settings.params
             await follow(first, "?scene=cloth")
@@ -120,29 +124,21 @@ def test_a_text_is_taken_once_by_a_panel_that_is_open(lab: Viewer) -> None:
 
     async def send_again() -> None:
         async with visitor(lab) as browser:
-            old = lab.panel.share.inbox
+            old, text = field_of(lab), text_of("open", "?scene=rope&points=9", number=1)
             lab.panel.close()
-            await browser.send(old, "page 1\n?scene=rope&points=9")
+            await browser.send(old, text)
             await until(lambda: old.value)
             await asyncio.sleep(0.3)
             assert params()["points"] != 9
             lab.open("rope")
-            await browser.send(lab.panel.share.inbox, "page 1\n?scene=rope&points=9")
+            await browser.send(field_of(lab), text)
             await until(lambda: params()["points"] == 9)
             lab.settings.set("points", 12)
-            for number, stiffness in ((1, 300.0), (2, 400.0)):
-                await browser.send(lab.panel.share.inbox, f"page {number}\n?scene=rope&stiffness={stiffness:g}")
+            for number, stiffness in ((1, 300.0), (2, 400.0), (2, 500.0)):
+                again = text_of("open", f"?scene=rope&stiffness={stiffness:g}", number=number)
+                await browser.send(field_of(lab), again)
                 await asyncio.sleep(0.1)
             await until(lambda: params()["stiffness"] == 400.0)
-            assert not lab.changes.take_text("page", "2")
+            assert lab.panel.share.channel.state_of("answers") == [("page", 1, "taken"), ("page", 2, "taken")]
 
     coroutines.run(send_again())
-
-
-def test_the_texts_of_the_pages_that_sent_last_are_remembered() -> None:
-    changes = SceneSwitches()
-    for page in range(2 * PAGES):
-        assert changes.take_text(str(page), "1")
-        assert changes.take_text("often", "1") is (page == 0)
-    assert len(changes.taken) == PAGES
-    assert not changes.take_text(str(2 * PAGES - 1), "1")

@@ -5,7 +5,6 @@ Everything is sent as the pages send it. The model is that of the loop's own tes
 
 import asyncio
 import dataclasses
-import itertools
 import random
 from concurrent.futures import Future
 from types import SimpleNamespace
@@ -21,6 +20,7 @@ from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
 from sim.parameters import check_record, effect_of_change, in_words
 from tests import coroutines
+from tests.app.channels import text_of
 from tests.app.server.loop.test_acts import Model, RunSeen
 from tests.app.server.visitors import Visitor, until, visitor
 from tests.stress.clients import DRAG
@@ -52,7 +52,6 @@ class TwoBrowsers:
     def __init__(self, lab: Viewer, browsers: tuple[Visitor, Visitor], rng: random.Random, clock: list[float]) -> None:
         """clock: [s] in a list; that of the history."""
         self.lab, self.browsers, self.rng, self.clock = lab, browsers, rng, clock
-        self.texts = itertools.count(1)
         self.model = Model(lab.settings.params, lab.settings.loaded)
         self.model.screen.running = None
         self.to_do: list[Any] = []  # acts
@@ -82,10 +81,9 @@ class TwoBrowsers:
         uuid = next(uuid for uuid, handle in commands.items() if handle.label == label)
         await self.browser.say({"type": "CommandTriggerMessage", "uuid": uuid})
 
-    def hidden(self, label: str) -> Any:
-        """A hidden button of the panel."""
-        (handle,) = (one for one in self.lab.server.gui._gui_input_handle_from_uuid.values() if one.label == label)  # type: ignore[attr-defined]
-        return handle
+    async def hold(self, browser: Visitor, held: bool) -> None:
+        """A browser takes a slider, or lets it go."""
+        await browser.send(self.lab.panel.share.channel.field, text_of("held", held))
 
     async def type_number(self, name: str, value: Any) -> None:
         await self.browser.send(self.lab.panel.controls[name].field, str(value))
@@ -178,7 +176,7 @@ class TwoBrowsers:
         value = round(getattr(small(scene), NUMBERS[scene]) * self.rng.uniform(0.8, 1.2), 6)
         params = dataclasses.replace(small(scene), **{NUMBERS[scene]: value})
         query = write_query(kind, params, self.rng.choice(list(kind.presets)))
-        await self.browser.send(self.lab.panel.share.inbox, f"page {next(self.texts)}\n{query}")
+        await self.browser.send(self.lab.panel.share.channel.field, text_of("open", query))
         if scene == self.scene:
             self.model.act(params, read_query(query).preset or next(iter(kind.presets)), begins=True, runs=True)
         else:
@@ -198,21 +196,21 @@ class TwoBrowsers:
     async def acts_beside_a_slider(self) -> None:
         """One browser holds a slider, the other types twice: each is an act."""
         name, (holds, other) = NUMBERS[self.scene], self.rng.sample(self.browsers, 2)
-        await holds.send(self.hidden("Slider held"), True)
+        await self.hold(holds, True)
         await until(lambda: self.lab.settings.history.hands == {holds.client})
         for browser in (other, other, holds):
             await browser.send(self.lab.panel.controls[name].field, str(self.another(name)))
             await until(lambda: self.lab.settings.params != self.params)
             self.model.act(self.lab.settings.params, begins=False)
             await self.settle()
-        await holds.send(self.hidden("Slider free"), True)
+        await self.hold(holds, False)
         await until(lambda: not self.lab.settings.history.hands)
 
     async def undo_under_a_slider(self) -> None:
         """One browser holds a slider, the other undoes in the middle of its drag, and the first one drags on."""
         name, (holds, other) = NUMBERS[self.scene], self.rng.sample(self.browsers, 2)
         before = self.params
-        await holds.send(self.hidden("Slider held"), True)
+        await self.hold(holds, True)
         await until(lambda: self.lab.settings.history.hands == {holds.client})
         for factor in (1.5, 1.6):
             await holds.send(self.lab.panel.controls[name].field, str(factor * getattr(small(self.scene), name)))
@@ -228,7 +226,7 @@ class TwoBrowsers:
         await holds.send(self.lab.panel.controls[name].field, str(self.another(name)))
         await until(lambda: self.lab.settings.params != before)
         self.model.act(self.lab.settings.params, begins=False)
-        await holds.send(self.hidden("Slider free"), True)
+        await self.hold(holds, False)
         await until(lambda: not self.lab.settings.history.hands)
 
     async def undo(self) -> None:

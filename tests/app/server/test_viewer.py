@@ -84,7 +84,7 @@ def test_a_scene_opens_with_its_defaults_and_at_a_first_look_with_what_moves(fir
         expected = kind.presets[kind.opening] if first_look else {}
         assert viewer.panel.settings.params == check_record(kind.params, expected)
         assert viewer.panel.compare is not None
-        assert not viewer.panel.compare.end.visible
+        assert viewer.panel.compare.channel.state_of("panes") == []
     finally:
         viewer.shut()
 

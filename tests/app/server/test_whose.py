@@ -9,6 +9,7 @@ from app.messages import LastFrame
 from app.server.viewer import Viewer
 from sim.validation import DivergenceError
 from tests import coroutines
+from tests.app.channels import text_of
 from tests.app.server.visitors import Visitor, until, visitor
 
 PLACE = (1.31, 3.21, 1.89)  # [m] to which a person turns the camera
@@ -87,9 +88,7 @@ def test_a_camera_that_was_moved_to_show_a_divergence_goes_back_unless_a_person_
 def test_parameters_and_the_run_are_everybodys_and_a_held_slider_is_a_browsers(lab: Viewer) -> None:
     async def look() -> None:
         async with visitor(lab) as first, visitor(lab) as second:
-            gui = lab.server.gui
-            held = [handle for handle in gui._gui_input_handle_from_uuid.values() if handle.label == "Slider held"]  # type: ignore[attr-defined]
-            await first.send(held[0], True)
+            await first.send(lab.panel.share.channel.field, text_of("held", True))
             await until(lambda: lab.settings.history.hands == {first.client})
             await second.send(lab.panel.controls["stiffness"].field, "1234")
             await until(lambda: vars(lab.settings.params)["stiffness"] == 1234.0)

@@ -161,7 +161,7 @@ def test_without_storage_and_language_the_page_works(chromium: Any) -> None:
         for pressed in ("true", "false"):
             dark.click()
             page.wait_for_function(
-                "is => document.querySelector('[data-springtide-switch=dark]').ariaPressed === is", arg=pressed
+                "is => document.querySelector('[data-springtide-act=dark]').ariaPressed === is", arg=pressed
             )
         assert page.locator("[role=slider][tabindex='0']").count() > 0  # accessibility.js has described them
         assert page.evaluate("Object.keys(window).filter(name => /springtide/i.test(name))") == ["__springtide"]

@@ -604,13 +604,13 @@ def test_a_clip_is_recorded_or_the_page_says_that_it_cannot(visit: Visit) -> Non
     visit.page.run("window.drawsPixels = true;")
     types = "['video/webm', 'video/mp4']"
     records = visit.page.run(f"return {types}.some((type) => window.MediaRecorder?.isTypeSupported(type));")
-    press = lambda: visit.page.press_on('document.querySelector("[data-springtide-clip]")')  # noqa: E731
+    press = lambda: visit.page.press_on('document.querySelector("[data-springtide-act=clip]")')  # noqa: E731
     press()
     if not records:
         visit.page.wait("return document.body.innerText.includes('This browser cannot record clips');")
         visit.page.press_on(named(BUTTON, "Close"))
         return
-    visit.page.wait("return /Stop clip .[1-9]/.test(document.querySelector('[data-springtide-clip]').textContent);")
+    visit.page.wait("return /Stop clip .[1-9]/.test(document.querySelector('[data-springtide-act=clip]').textContent);")
     is_mp4 = visit.page.run("return MediaRecorder.isTypeSupported('video/mp4;codecs=avc1.640028');")
     clip = saved(visit, press, ".mp4" if is_mp4 else ".webm", b"" if is_mp4 else b"\x1a\x45\xdf\xa3")
     assert len(clip) > 1000
@@ -624,7 +624,7 @@ def test_a_set_up_is_chosen_from_a_file(visit: Visit, tmp_path: Path) -> None:
     for points in (23, 24):
         path.write_text(json.dumps({"scene": "rope", "parameters": {"points": points}}), "utf-8")
         visit.show("Share")
-        visit.page.choose_file("[data-springtide-load]", path)
+        visit.page.choose_file(".springtide-load input", path)
         visit.until(lambda points=points: visit.param("points") == points, "the file is not read")
 
 
@@ -646,9 +646,10 @@ def test_a_file_that_is_chosen_while_the_lab_changes_scenes_is_read(
     opening.start()
     try:
         visit.until(closed.is_set, "the old scene is not closed")
-        old, taken = visit.viewer.panel.share.inbox, dict(visit.viewer.changes.taken)
-        visit.page.choose_file("[data-springtide-load]", path)
-        visit.until(lambda: old.value or visit.viewer.changes.taken != taken, "nothing is sent")
+        sent: list[Any] = []
+        monkeypatch.setitem(visit.viewer.panel.share.channel._listeners, "open", (str, sent.append))
+        visit.page.choose_file(".springtide-load input", path)
+        visit.until(lambda: sent, "nothing is sent")
     finally:
         goes_on.set()
         opening.join()
@@ -807,7 +808,7 @@ def test_without_storage_the_page_works(visit: Visit, with_script: Callable[[str
     visit.show("View")
     for pressed in ("true", "false"):
         visit.page.press_on(named(BUTTON, "Dark"))
-        visit.page.wait(f"return document.querySelector('[data-springtide-switch=dark]').ariaPressed === '{pressed}';")
+        visit.page.wait(f"return document.querySelector('[data-springtide-act=dark]').ariaPressed === '{pressed}';")
     assert visit.page.run("return document.querySelectorAll(\"[role=slider][tabindex='0']\").length;") > 0
     assert visit.errors() == []
     visit.page.open("about:blank")

@@ -11,8 +11,8 @@ from tests.browser.conftest import Tab
 RUNNING = '.springtide-panel[data-state="running"]'
 TRACED = ["devtools.timeline", "disabled-by-default-devtools.timeline"]
 MAX_RESTYLED = 100  # elements, of about 450
-MARKED = """() => Object.fromEntries([...document.querySelectorAll("body *")].flatMap((one) => [...one.attributes])
-    .filter(({ name }) => name.startsWith("data-springtide-is-")).map(({ name }) => [name.slice(19), true]))"""
+MARKED = """() => [...document.querySelectorAll("[data-springtide-is]")]
+    .flatMap((one) => one.dataset.springtideIs.trim().split(" "))"""
 
 
 def restyled(chromium: Any, page: Any, seconds: float) -> list[int]:

@@ -87,7 +87,7 @@ def choose(tab: Tab, label: str, option: str) -> None:
 def switch(name: str) -> Callable[[Tab], None]:
     def press(tab: Tab) -> None:
         tab.show("View")
-        tab.page.locator(f"[data-springtide-switch={name}]").click()
+        tab.page.locator(f"[data-springtide-act={name}]").click()
         tab.show("Controls")
 
     return press
@@ -95,7 +95,7 @@ def switch(name: str) -> Callable[[Tab], None]:
 
 def set_quality(tab: Tab, quality: str) -> None:
     tab.show("View")
-    tab.page.locator("[data-springtide-quality]").select_option(quality)
+    tab.page.locator("[data-springtide-choice=quality]").select_option(quality)
     tab.show("Controls")
 
 

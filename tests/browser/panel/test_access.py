@@ -111,7 +111,7 @@ def check_both_ends(tab: Tab) -> None:
     """At the start both switches can be pressed; the wheel brings the last control to where it can be."""
     scroll(tab, -3000)
     for switch in ("dark", "large"):
-        tab.page.locator(f"[data-springtide-switch={switch}]").click(trial=True, timeout=5000)
+        tab.page.locator(f"[data-springtide-act={switch}]").click(trial=True, timeout=5000)
     assert not any(tab.page.evaluate(SCROLLED))  # the trial has scrolled nothing
     scroll(tab, 3000)
     last = tab.page.evaluate(LAST_CONTROL)
@@ -125,7 +125,7 @@ def test_the_wheel_reaches_the_last_control_with_large_text(one_page: tuple[View
     size = tab.page.viewport_size
     tab.follow(viewer, "square_sea")
     viewer.loop.commands.put(Pause())
-    switches = [tab.page.locator(f"[data-springtide-switch={name}]") for name in ("large", "dark")]
+    switches = [tab.page.locator(f"[data-springtide-act={name}]") for name in ("large", "dark")]
     try:
         for width, height in ((1280, 800), (390, 844)):
             tab.page.set_viewport_size({"width": width, "height": height})
@@ -184,7 +184,7 @@ def test_every_text_has_enough_contrast_light_and_dark(opened: tuple[Viewer, Tab
     _, tab = opened
     assert low_contrasts(tab) == []
     tab.show("View")
-    switch = tab.page.locator("[data-springtide-switch=dark]")
+    switch = tab.page.locator("[data-springtide-act=dark]")
     switch.click()
     tab.wait(lambda: tab.page.locator("html[data-mantine-color-scheme=dark]").count())
     tab.show("Controls")

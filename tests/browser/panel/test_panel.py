@@ -12,9 +12,7 @@ from tests.browser.conftest import Tab
 
 SCENE = "rope"
 # Whether the browser's history has an entry for what is shown, and is at it.
-TAKEN_IN = (
-    "() => history.state?.springtide === document.querySelector('[data-springtide-here]')?.dataset.springtideHere"
-)
+TAKEN_IN = "() => history.state?.springtide === __springtide.channel.topicState('acts')?.here"
 
 
 def field(lab: Viewer, tab: Tab, name: str):
@@ -190,7 +188,7 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
 @pytest.mark.long
 def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
-    picture = tab.page.locator('[data-springtide-scene="Cloth"]')
+    picture = tab.page.locator("[data-springtide-act=scene][value=cloth]")
     tab.wait(tab.page.get_by_text(TITLE).is_visible)
     tab.page.get_by_text(TITLE).click()
     tab.wait(picture.is_visible, 20)
@@ -205,8 +203,8 @@ def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -
     tab = open_tab(lab.port)
 
     def shows(scene: str, preset: str) -> bool:
-        here = tab.page.locator("[data-springtide-here]")
-        return (lab.settings.kind.name, lab.settings.loaded) == (scene, preset) and here.count() == 1
+        acts = tab.page.locator("[data-springtide-topic=acts]")
+        return (lab.settings.kind.name, lab.settings.loaded) == (scene, preset) and acts.count() == 1
 
     def at(scene: str, preset: str) -> None:
         tab.wait(lambda: shows(scene, preset), 30)

@@ -65,7 +65,7 @@ def test_the_tab_has_three_groups_and_few_buttons(
 def load(tab: Tab, path: Path, content: object) -> None:
     """Choose a file in the page."""
     path.write_text(content if isinstance(content, str) else json.dumps(content), "utf-8")
-    tab.page.locator("[data-springtide-load]").set_input_files(str(path))
+    tab.page.locator(".springtide-load input").set_input_files(str(path))
 
 
 @pytest.mark.long
@@ -165,16 +165,16 @@ def test_clip_picture_and_plots_are_made_as_files(
         return tmp_path / download.value.suggested_filename
 
     with tab.page.expect_download(timeout=60_000) as download:
-        tab.page.locator("[data-springtide-clip]").click()  # its name says how long the clip is by now
+        tab.page.locator("[data-springtide-act=clip]").click()  # its name says how long the clip is by now
     clip = Path(download.value.path()).read_bytes()
     assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
-    tab.wait(lambda: tab.page.locator("[data-springtide-clip]").inner_text() == "Clip saved")
+    tab.wait(lambda: tab.page.locator("[data-springtide-act=clip]").inner_text() == "Clip saved")
     width, height, *top = tab.page.evaluate(FIRST_ROW, base64.b64encode(clip).decode())
     sky = LIGHT_SKY.pixels(height, width)  # that the page shows
     assert np.median(abs(np.reshape(top, (width, 4))[:, :3] - sky[0])) < 5.0
-    tab.wait(lambda: tab.page.locator("[data-springtide-clip]").inner_text() == "Record clip")
+    tab.wait(lambda: tab.page.locator("[data-springtide-act=clip]").inner_text() == "Record clip")
     for form, begin in (("CSV", b"t [s],"), ("SVG", b"<?xml"), ("PNG", b"\x89PNG")):
-        tab.page.locator("[data-springtide-plots]").select_option(form)
+        tab.page.locator("[data-springtide-choice=plots]").select_option(form)
         made = saved("Save plots").read_bytes()
         assert made.startswith(begin)
     assert iio.imread(made).std() > 1.0

@@ -19,7 +19,7 @@ from tests.browser.water.test_water import PANEL_HIDDEN
 
 DARK_SKY = "canvas[data-engine] { background: black !important } #springtide-cover { display: none }"
 WIDTH = "() => document.querySelector('canvas[data-engine]')?.width"
-CHOOSE = """name => { const select = document.querySelector("[data-springtide-quality]"); select.value = name;
+CHOOSE = """name => { const select = document.querySelector("[data-springtide-choice=quality]"); select.value = name;
     select.dispatchEvent(new Event("change", { bubbles: true })); }"""
 BRIGHT = 180  # of 255: backgrounds of labels on black reach 217, and nothing else that is drawn 160
 

@@ -10,7 +10,7 @@ from tests.browser.conftest import WITH_CARD, new_page
 
 STATE = """() => ({ ...window.__springtide?.quality?.now(), width: document.querySelector("canvas[data-engine]")?.width,
     line: document.querySelector("#springtide-slow")?.innerText ?? "",
-    now: document.querySelector("[data-springtide-quality-now]")?.innerText ?? null,
+    now: document.querySelector(".springtide-quality")?.innerText ?? null,
     detail: (window.__viserMutable?.nodeRefFromName?.["/sea"]?.children
         ?.find(c => c.isMesh && c.visible && c.layers.mask)?.material.userData.springtide ?? "") })"""
 # As if drawing took so long in each frame [ms], whatever this machine can do. The page waits, as a loop that runs so
@@ -74,9 +74,9 @@ def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> 
     page.get_by_role("button", name="Keep high quality").click()
     high = wait_for(page, "s.width === 420 && s.detail === 'springtide-water/sea lit'")
     assert (high["step"], high["line"], high["now"]) == (0, "", "")
-    assert page.locator("[data-springtide-quality]").input_value() == "high"
+    assert page.locator("[data-springtide-choice=quality]").input_value() == "high"
     page.wait_for_timeout(4000)  # longer than the automatic choice takes to fall
     assert page.evaluate(STATE)["step"] == 0
-    page.locator("[data-springtide-quality]").select_option("low")
+    page.locator("[data-springtide-choice=quality]").select_option("low")
     low = wait_for(page, "s.width === 210 && s.details === 0")
     assert (low["quality"], low["line"]) == ("low", "")

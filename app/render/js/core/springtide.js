@@ -5,7 +5,8 @@
 // whether it is open, close(), and hurry(time [ms]), which shortens the attempt to connect. isRecording: true while a clip is
 // recorded. awaitPicture(): the scene is another one. showsWhole(): true if the canvas shows its complete picture
 // (page/cover.js). isWhole: true once the first picture of the scene was complete; areWhole(): the same of all frames
-// (beside.html). quality, memory, skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
+// (beside/main.js). quality, memory, skiesDrawn, contexts: for tests. beside: true on the page with the panes
+// (beside/main.js). channel: to the lab, for the page with the panes (core/channel.js).
 
 /** @type {Springtide} */
 export const springtide = (globalThis.__springtide ??= {});

@@ -5,7 +5,7 @@
 
 import { page } from "./life.js";
 
-const STATUS = ".springtide-panel, .springtide-figures, .springtide-readings, [data-springtide-time]"; // rewritten in each frame
+const STATUS = ".springtide-panel, .springtide-figures, .springtide-readings, [data-springtide-topic]"; // rewritten in each frame
 const CONTROL = "button, label, [role]"; // elements whose words are read
 const OWN = "springtide-"; // prefix of the identifiers of our own elements, some of them moved in each frame
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are

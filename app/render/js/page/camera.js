@@ -15,7 +15,7 @@ const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
 const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
 const MAX_WAVE_HEIGHT = 40; // [m] above the mean water; higher cameras need no look at waves
 const MIN_ASPECT = 1.05; // least width over height of the field of view, enough for all presets
-const OPEN_BAR = '[data-springtide-is-bar] > [aria-label="Collapse panel Plots"]'; // on a phone
+const OPEN_BAR = '[data-springtide-is~=bar] > [aria-label="Collapse panel Plots"]'; // on a phone
 
 /** @type {(keyof Box)[]} */
 const SIDES = ["x", "y", "width", "height"];

@@ -4,6 +4,7 @@
 // compiled it shows the panel's progress (an element of class "springtide-progress"). It returns when there is no connection
 // and the server does not answer. If the page cannot start or may not connect, it shows the reason (before/failures.js).
 
+import { topicState } from "../core/channel.js";
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
 import { connectionNumber } from "../core/viewer.js";
@@ -34,9 +35,7 @@ function update() {
   }
   if (document.querySelector(".springtide-panel")) {
     waiting = "Opening the scene …"; // the page is connected now
-    // The panel by its field for reports. A lab that draws by viser's public interface has none; otherwise it follows the status
-    // line.
-    const isAwaited = awaitsPicture(document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "");
+    const isAwaited = awaitsPicture(topicState("picture")?.scene ?? ""); // a lab that draws by viser's public interface has none
     return showCover(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
   }
   return showCover(springtide.failure || refusal || waiting, false);

@@ -13,7 +13,6 @@ const PARTS = {
   hall: () => import("../panel/hall.js"),
   timeline: () => import("../panel/timeline.js"),
   share: () => import("../sharing/share.js"),
-  scenes: () => import("../panel/scenes.js"),
   visited: () => import("../sharing/visited.js"),
   acts: () => import("../panel/acts.js"),
   display: () => import("../panel/display.js"),

@@ -3,6 +3,7 @@
 //
 // `data-springtide-veil` of the document greys the picture (page.css).
 
+import { topicState } from "../core/channel.js";
 import { springtide } from "../core/springtide.js";
 import { onChange, onLook } from "../core/watch.js";
 import { Waiting } from "./waiting.js";
@@ -15,11 +16,10 @@ words.setAttribute("role", "status");
 document.body.append(words);
 
 function look() {
-  const { springtideAwaited: awaited = "" } = document.querySelector("[data-springtide-awaited]")?.dataset ?? {};
+  const { awaited } = topicState("acts") ?? {}, { scene } = topicState("picture") ?? {};
   const { placed = "" } = document.querySelector(".springtide-panel[data-placed]")?.dataset ?? {};
-  const panel = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
   const { showsWhole, awaitPicture } = springtide;
-  const isVeiled = waiting.look(performance.now(), { panel, awaited, placed }, () => showsWhole?.() ?? true, () => awaitPicture?.());
+  const isVeiled = waiting.look(performance.now(), { panel: String(scene), awaited: String(awaited ?? ""), placed }, () => showsWhole?.() ?? true, () => awaitPicture?.());
   if (isVeiled === "springtideVeil" in root.dataset) return;
   if (isVeiled) root.dataset.springtideVeil = "";
   else delete root.dataset.springtideVeil;

@@ -18,9 +18,7 @@ function describeFolder(title) {
   if (!title.querySelector("svg")) return;
   set(title, "role", "button");
   set(title, "tabindex", "0");
-  const isOpen = title.querySelector(".tabler-icon-chevron-up") !== null;
-  set(title, "aria-expanded", String(isOpen));
-  title.parentElement?.toggleAttribute("data-springtide-is-closed", !isOpen);
+  set(title, "aria-expanded", String(title.querySelector(".tabler-icon-chevron-up") !== null));
 }
 
 // The text field of a slider: in the row before its own.

@@ -17,7 +17,7 @@ const BELOW = 4; // [pixels] of a pane below its charts
 const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
 const MIN_CANVAS = 70; // [pixels] of a chart without its title
 const PANES = ".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))";
-const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = "[data-springtide-is-bar]";
+const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = "[data-springtide-is~=bar]";
 const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
 const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
 const TICK_HEIGHT = 1.1; // of the words of a tick, in sizes of their type

@@ -3,14 +3,16 @@
 // Without a choice the panel follows the system. The server gives this browser viser's dark theme and a dark floor; the colour
 // scheme is set here at once, so that nothing flashes in between.
 
+import { tell } from "../core/channel.js";
 import { page } from "../core/life.js";
 import { store, stored } from "../core/storage.js";
-import { connectionNumber, send } from "../core/viewer.js";
 import { onControls, onValues } from "../core/watch.js";
+import { onPress } from "./buttons.js";
 
 const SCHEME = "data-mantine-color-scheme";
 /** @typedef {keyof typeof CHOICES} Choice */
 const CHOICES = { dark: "springtide-dark", large: "springtide-large" };
+const NAMES = /** @type {Choice[]} */ (Object.keys(CHOICES));
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 
 /** @param {Choice} name */
@@ -24,40 +26,27 @@ function apply() {
   document.documentElement.classList.toggle("springtide-large", chosen("large"));
   document.documentElement.classList.toggle("springtide-dark", chosen("dark"));
   if (document.documentElement.getAttribute(SCHEME) !== scheme) document.documentElement.setAttribute(SCHEME, scheme);
-  for (const button of document.querySelectorAll("[data-springtide-switch]")) {
-    const pressed = String(chosen(/** @type {Choice} */ (button.dataset.springtideSwitch)));
-    if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
+  for (const name of NAMES) {
+    const button = document.querySelector(`[data-springtide-act=${name}]`), pressed = String(chosen(name));
+    if (button && button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
   }
   for (const label of document.querySelectorAll(".mantine-Switch-label")) {
     // viser's own switch, which would do nothing here.
     if (label.textContent === "Dark Mode") label.closest(".mantine-Switch-root")?.style.setProperty("display", "none");
   }
-  tellServer();
+  // The server draws the floor for each browser, light unless it knows otherwise.
+  wasDark ||= chosen("dark");
+  if (wasDark) tell("dark", chosen("dark"));
 }
+let wasDark = false;
 
-// The server draws the floor for each browser: light, or dark.
-let told = ""; // the connection, the panel's hidden button, and the scheme, as sent last
-function tellServer() {
-  const holder = document.querySelector("[data-springtide-dark]");
-  if (!holder) return;
-  const { springtideDark, springtideLight } = holder.dataset;
-  const dark = chosen("dark");
-  const panel = `${connectionNumber()} ${springtideDark}`, now = `${panel} ${dark}`;
-  if (now === told || (!dark && !told.startsWith(panel))) return; // a scene begins light
-  if (send(dark ? springtideDark : springtideLight, true)) told = now;
+for (const name of NAMES) {
+  onPress(name, () => {
+    store(CHOICES[name], chosen(name) ? "no" : "yes");
+    apply();
+  });
 }
-
-page.listen(document, "click", (event) => {
-  if (event.target instanceof Element && event.target.closest("[data-springtide-display]")) {
-    document.querySelector("[data-springtide-is-settings]")?.click(); // viser's own settings
-    return;
-  }
-  const button = event.target instanceof Element && event.target.closest("[data-springtide-switch]");
-  if (!button) return;
-  const name = /** @type {Choice} */ (button.dataset.springtideSwitch);
-  store(CHOICES[name], chosen(name) ? "no" : "yes");
-  apply();
-});
+onPress("display", () => document.querySelector("[data-springtide-is~=settings]")?.click()); // viser's own settings
 page.listen(systemDark, "change", apply);
 page.listen(window, "storage", (event) => Object.values(CHOICES).includes(event.key ?? "") && apply());
 // viser's client sets its own scheme when it starts; the switches come with each scene.

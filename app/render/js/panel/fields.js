@@ -4,8 +4,8 @@
 // Escape restores the value; the arrows change its second digit. A list or button loses the focus after use, so that
 // the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
 
+import { tell } from "../core/channel.js";
 import { page } from "../core/life.js";
-import { send as sendToLab } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { stepped } from "./numbers.js";
 
@@ -122,10 +122,8 @@ page.listen(document, "click", (event) => {
 let held = false;
 /** @param {boolean} now */
 function tellHeld(now) {
-  const holder = document.querySelector("[data-springtide-held]");
-  if (now === held || !holder) return;
+  if (now !== held) tell("held", now);
   held = now;
-  sendToLab(now ? holder.dataset.springtideHeld : holder.dataset.springtideFree, true);
 }
 page.listen(document, "pointerdown", ({ target }) => {
   if (target instanceof Element && target.closest(".multi-slider")) tellHeld(true);

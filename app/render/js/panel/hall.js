@@ -6,6 +6,7 @@
 
 import { page } from "../core/life.js";
 import { onChange, onLook } from "../core/watch.js";
+import { onPress } from "./buttons.js";
 
 const ENLARGED = "springtide-enlarged", PROJECTING = "springtide-projecting"; // classes of the page
 const CHART = ".uplot-container", MARK = "springtideFillsWindow"; // data attribute of the chart that fills the window
@@ -65,10 +66,9 @@ function sayState() {
   if (said.innerHTML !== status.innerHTML) said.innerHTML = status.innerHTML; // writing it would count as a change of the page
 }
 
+onPress("projector", () => project(!isIn(PROJECTING)));
 page.listen(document, "click", ({ target }) => {
-  if (!(target instanceof Element)) return;
-  if (target.closest("[data-springtide-projector]")) project(!isIn(PROJECTING));
-  if (target.closest("#springtide-words button")) end();
+  if (target instanceof Element && target.closest("#springtide-words button")) end();
 }, { capture: true });
 // Before viser handles it.
 page.listen(window, "click", (event) => {

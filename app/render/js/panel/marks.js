@@ -5,10 +5,12 @@
 
 import { onControls } from "../core/watch.js";
 
-export const PANEL = "[data-floating-window], [data-springtide-is-sheet]"; // the panel in a window, or on a phone
+export const PANEL = "[data-floating-window], [data-springtide-is~=sheet]"; // the panel in a window, or on a phone
 const ROW = "> .mantine-Flex-root"; // of a control of viser's: its name and its field
+const FOLDER = "> .mantine-Paper-root:first-child"; // its title
 const RESULT = ":is(.springtide-verdict, .springtide-refusal)"; // of a check in the lab
-// Name of the mark -> selector. Marks are attributes, as React rewrites the classes of its elements.
+const MARK = "data-springtide-is"; // attribute with the names of an element's marks: React rewrites classes
+// Name of the mark -> selector.
 const MARKS = {
   // Panels
   alone: "[data-floating-window]:not(:has([data-floating-divider]))", // a window with one panel
@@ -23,6 +25,7 @@ const MARKS = {
   charts: ":is([data-floating-window], [data-dock-region], .mantine-Paper-root, .mantine-Tabs-root):has(.uplot)",
   single: ".u-legend:not(:has(.u-series + .u-series))", // the key of a chart with one line
   settings: ".mantine-ActionIcon-root:has(.tabler-icon-adjustments)",
+  closed: `.mantine-Paper-root:has(${FOLDER} svg):not(:has(${FOLDER} .tabler-icon-chevron-up))`, // a folder
   // Rows of controls
   name: ".mantine-Flex-root > div:first-child:has(> p > label)",
   nameless: ".mantine-Flex-root > div:first-child:has(label:empty)",
@@ -35,7 +38,7 @@ const MARKS = {
   sliders: `div:has(> div ${ROW} > div > div > .multi-slider)`, // holds such rows
   field: `div:has(${ROW} .mantine-TextInput-root):has(+ div .multi-slider)`,
   slider: `div:has(${ROW} .mantine-TextInput-root) + div:has(${ROW} .multi-slider)`,
-  plots: ".springtide-switches:has([data-springtide-plots], .springtide-load)",
+  plots: ".springtide-switches:has([data-springtide-choice=plots], .springtide-load)",
   // The lab of a course
   lab: ".mantine-ScrollArea-content div:has(.mantine-Paper-root .springtide-panel[data-state])", // holds the first block
   task: "div:has(> div > .springtide-note > .springtide-guide)",
@@ -47,11 +50,13 @@ const MARKS = {
 };
 
 function mark() {
+  /** @type {Map<Element, string>} */
+  const marks = new Map(); // element -> names of its marks, with a space after each
   for (const [name, selector] of Object.entries(MARKS)) {
-    const attribute = `data-springtide-is-${name}`, found = new Set(document.querySelectorAll(selector));
-    for (const one of document.querySelectorAll(`[${attribute}]`)) if (!found.delete(one)) one.removeAttribute(attribute);
-    for (const one of found) one.setAttribute(attribute, "");
+    for (const one of document.querySelectorAll(selector)) marks.set(one, `${marks.get(one) ?? ""}${name} `);
   }
+  for (const one of document.querySelectorAll(`[${MARK}]`)) if (!marks.has(one)) one.removeAttribute(MARK);
+  for (const [one, names] of marks) if (one.getAttribute(MARK) !== names) one.setAttribute(MARK, names);
 }
 
 onControls(mark);

@@ -1,13 +1,12 @@
 // The time line along the foot of the scene: a bar as wide as the scene, with the recording and its shown moment.
 //
-// The panel gives the state in `data-springtide-time`, and receives actions through the hidden field named there. The bar is
-// beside the panel, or above it if the panel is a sheet at the foot. Other elements at the foot of the scene are placed by
+// Its state and its actions are topic "time". The bar is beside the panel, or above it if the panel is a sheet at the foot. Other elements at the foot of the scene are placed by
 // `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges of the window, and
 // `--springtide-bar`, its height.
 
+import { onTopic, say as sayToLab } from "../core/channel.js";
 import { page } from "../core/life.js";
-import { PAGE, send as sendToLab } from "../core/viewer.js";
-import { onChange, onLook, wake } from "../core/watch.js";
+import { onLook, wake } from "../core/watch.js";
 import { footOf, wordsOf } from "./foot.js";
 import { PANEL } from "./marks.js";
 
@@ -29,18 +28,18 @@ const back = part("output"), speed = part("select"), line = part("input"), momen
 const button = (act) => /** @type {HTMLButtonElement} */ (bar.querySelector(`[data-act=${act}]`));
 /**
  * The panel's state: times are in seconds; shown: null at the present.
- * @typedef {{ inbox: string, run: number, low: number, high: number, shown: number | null, rate: number,
+ * @typedef {{ run: number, low: number, high: number, shown: number | null, rate: number,
  *   rates: number[], loops: boolean, playing: boolean, resumable: boolean, size: string }} State
  */
 /** @type {State} */
 let state;
-let told = "", count = 0, held = false, sentAt = 0;
+let held = false, sentAt = 0;
 /** @type {ReturnType<typeof setTimeout> | 0} */
 let waiting = 0;
 
 /** @param {string} act @param {string | number} number */
 function send(act, number) {
-  sendToLab(state.inbox, `${PAGE}${++count} ${act} ${number} ${state.run}`);
+  sayToLab("time", [act, Number(number), state.run]);
 }
 
 /** @param {Element} element @param {string} text */
@@ -57,13 +56,11 @@ function say(isPast) {
   line.setAttribute("aria-valuetext", `${moment.textContent}, ${back.textContent}`);
 }
 
-function update() {
-  const now = document.querySelector("[data-springtide-time]")?.dataset.springtideTime ?? "";
-  if (now === told) return;
-  told = now;
+/** @param {State | undefined} now */
+function update(now) {
   bar.hidden = !now;
   if (!now) return;
-  state = JSON.parse(now);
+  state = now;
   const isPast = state.shown !== null;
   const shown = String(state.shown ?? "");
   if (bar.dataset.moment !== shown) {
@@ -140,5 +137,5 @@ function place() {
 
 bar.hidden = true;
 document.body.append(bar);
-onChange(update);
+onTopic("time", update);
 onLook(place);

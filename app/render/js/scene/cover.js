@@ -25,14 +25,15 @@ function othersAreWhole() {
   }
 }
 
-/** @type {string | null} */
+/** @type {string | number | null} */
 let opened = null; // the scene whose picture is awaited
 let openedAt = 0; // [ms] since when
+/** @type {string | number} */
 export let pictured = ""; // the scene whose picture was complete
 
-// True if the picture of a scene is not complete yet. scene: a name of it that no other scene of this page has; "" for a scene
-// whose picture has no list of parts.
-/** @param {string} scene */
+// True if the picture of a scene is not complete yet. scene: a name or number of it that no other scene of this page has; "" for
+// a scene whose picture has no list of parts.
+/** @param {string | number} scene */
 export function awaitsPicture(scene) {
   if (scene && scene === pictured) return false;
   const now = performance.now();

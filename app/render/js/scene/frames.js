@@ -7,6 +7,7 @@
 // Of three this file uses the renderer's render and setSize, the versions of attributes, materials and textures, and the
 // values of materials and uniforms. Anything that it cannot compare counts as changed.
 
+import { topicState } from "../core/channel.js";
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
 import { awaitsSky } from "../sea/sky_table.js";
@@ -117,8 +118,8 @@ function inputsOf(renderer, scene, camera) {
 function isComplete(scene, awaitsParts) {
   if (!scene.environment || awaitsLight() || lacksPrograms) return false;
   if (!awaitsParts) return true;
-  const { springtideSky: sky, springtideNodes: nodes = "" } = document.querySelector("[data-springtide-sky]")?.dataset ?? {};
-  return Boolean(sky) && skyOf(scene) === sky && nodes.split("\n").every((name) => !name || viewer()?.nodeRefFromName[name]);
+  const { sky, nodes } = topicState("picture") ?? {};
+  return Boolean(sky) && skyOf(scene) === sky && nodes.every((/** @type {string} */ name) => viewer()?.nodeRefFromName[name]);
 }
 
 // life: of the renderer.

@@ -2,14 +2,15 @@
 //
 // A node requests a shader by a hidden child mesh with its suffix: "/rope" has a colour at each vertex if there is a
 // "/rope/vertex_colors". All data travels as vertices, so that new scenes, browsers that connect later and recordings need no
-// further script. A lab that draws by viser's public interface alone has a panel without the field for reports: there
-// nothing is replaced.
+// further script. A lab that draws by viser's public interface alone does not listen to reports: there nothing is
+// replaced.
 
+import { topicState, tell } from "../core/channel.js";
 import { Life, page } from "../core/life.js";
 import { beforeRender } from "../core/render_hook.js";
 import { springtide } from "../core/springtide.js";
-import { connectionNumber, PAGE, send, startedViewer } from "../core/viewer.js";
-import { onControls, onLook } from "../core/watch.js";
+import { startedViewer } from "../core/viewer.js";
+import { onLook } from "../core/watch.js";
 import { openWater } from "../sea/open_water.js";
 import { rain } from "../sea/rain.js";
 import { skiesDrawn } from "../sea/sky_table.js";
@@ -34,16 +35,15 @@ import { vertexColors } from "./vertex_colors.js";
 /** @type {NodeShader[]} */
 const SHADERS = [vertexColors, openWater, contact, water, rain];
 
-let drawn = "", reported = "";
-const field = () => document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders;
-const isPlain = () => !field() && document.querySelector(".springtide-panel[data-state]") !== null;
+/** @type {string[]} */
+let drawn = [];
+const isPlain = () => !topicState("picture") && document.querySelector(".springtide-panel[data-state]") !== null;
 
 // Report the names of the nodes that are drawn with their shader, and whether the picture of the scene is whole: the run waits
-// for that. Once to each field of each connection and after each change. Each scene has its own field.
+// for that.
 function report() {
-  const word = `${PAGE}${field() && pictured === field() ? " whole" : ""}\n${drawn}`;
-  const now = `${connectionNumber()} ${field()} ${word}`;
-  if (field() && reported !== now && send(field(), word)) reported = now;
+  const scene = topicState("picture")?.scene;
+  if (scene) tell("drawn", { scene, isWhole: pictured === scene, nodes: drawn });
 }
 
 // Call a function for each shader and each node that requests it: { base, mesh, data }.
@@ -94,12 +94,11 @@ function dressScene(renderer, scene, camera) {
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);
   springtide.skiesDrawn = skiesDrawn;
-  drawn = active.sort().join("\n");
+  drawn = active.sort();
   report();
 }
 
 page.own(() => current?.life.end());
 beforeRender("data", () => forEachShaded((shader, node) => shader.unpack?.(node)));
 beforeRender("materials", dressScene);
-onControls(report);
 onLook(report);

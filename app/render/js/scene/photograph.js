@@ -8,6 +8,7 @@
 // The lab sends the name of a sky before its photograph. Until that is decoded, viser's client draws the previous sky, or at first
 // its default.
 
+import { topicState } from "../core/channel.js";
 import { toHalf } from "../sea/half_floats.js";
 import { contextNumber, drawsFloats } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
@@ -35,8 +36,7 @@ const names = new WeakMap();
 export function nameSky({ environment, background, environmentIntensity }) {
   if (!environment || names.has(environment)) return;
   const isOfLab = background || environmentIntensity !== 1;
-  const named = document.querySelector("[data-springtide-sky]")?.dataset.springtideSky;
-  names.set(environment, (isOfLab && named) || "");
+  names.set(environment, (isOfLab && topicState("picture")?.sky) || "");
 }
 
 // Name of the sky that lights the scene; "" without one of the lab.

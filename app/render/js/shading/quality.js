@@ -109,10 +109,10 @@ function show() {
     line = null;
   }
   /** @type {NodeListOf<HTMLSelectElement>} */
-  const selects = document.querySelectorAll("[data-springtide-quality]");
+  const selects = document.querySelectorAll("[data-springtide-choice=quality]");
   for (const select of selects) {
     if (select.value !== choice) select.value = choice;
-    const now = select.parentElement?.querySelector("[data-springtide-quality-now]");
+    const now = select.parentElement?.querySelector(".springtide-quality");
     const text = lowered ? `now ${current.quality}` : "";
     if (now && now.textContent !== text) now.textContent = text;
   }
@@ -127,7 +127,7 @@ const ratio = () => devicePixelRatio * (isCapturing() ? 1 : current.pixels);
 
 readChoice();
 page.listen(document, "change", (event) => {
-  if (event.target instanceof HTMLSelectElement && "springtideQuality" in event.target.dataset) choose(event.target.value);
+  if (event.target instanceof HTMLSelectElement && event.target.dataset.springtideChoice === "quality") choose(event.target.value);
 });
 page.listen(document, "visibilitychange", forget);
 page.listen(window, "storage", (event) => {

@@ -34,7 +34,7 @@ export function download(content, name) {
 // Words of the button. Each scene has its own button.
 /** @param {string} words */
 function label(words) {
-  const button = document.querySelector("[data-springtide-clip]");
+  const button = document.querySelector("[data-springtide-act=clip]");
   if (button) button.textContent = words;
 }
 

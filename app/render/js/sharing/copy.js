@@ -1,24 +1,13 @@
-// "Copy link": the lab makes the link, with the camera of the page that asks, and this page copies it and says what came of it.
+// "Copy link": the lab makes the link, with the camera of the page that asks, and this page copies it.
 //
 // Browsers copy only soon after a press. So the clipboard is given the link before it has arrived, where the browser has that.
 
-const ASKED = 10_000; // [ms] after a press for the link to arrive
-
 /** @typedef {{ write?: (items: ClipboardItem[]) => Promise<void>, writeText?: (text: string) => Promise<void> }} Clipboard */
 
-/** @type {{ resolve: (text: string) => void, reject: (reason: Error) => void } | null} */
-let asked = null; // the press that waits for its link
-
-// Copy a link once it has arrived. True if it is in the clipboard, false if the browser refused. Throws an Error if the link does
-// not arrive, or if the button was pressed again.
-/** @param {Clipboard | undefined} clipboard @param {typeof ClipboardItem | undefined} Item @param {number} patience [ms] */
-export async function copyNext(clipboard, Item, patience = ASKED) {
-  asked?.reject(new Error("pressed again"));
-  /** @type {Promise<string>} */
-  const link = new Promise((resolve, reject) => {
-    const late = setTimeout(() => reject(new Error("late")), patience);
-    asked = { resolve: (text) => { clearTimeout(late); resolve(text); }, reject: (reason) => { clearTimeout(late); reject(reason); } };
-  });
+// Copy a text that arrives later. True if it is in the clipboard, false if the browser refused. Throws the error of a text that
+// does not arrive.
+/** @param {Promise<string>} link @param {Clipboard | undefined} clipboard @param {typeof ClipboardItem | undefined} Item */
+export async function copy(link, clipboard, Item) {
   link.catch(() => {}); // it is awaited below
   if (Item && clipboard?.write) {
     const content = link.then((text) => new Blob([text], { type: "text/plain" }));
@@ -38,13 +27,4 @@ export async function copyNext(clipboard, Item, patience = ASKED) {
   } catch {
     return false;
   }
-}
-
-// The link of the lab for the last press. Returns true if this page has pressed.
-/** @param {string} text */
-export function arrive(text) {
-  if (!asked) return false;
-  asked.resolve(text);
-  asked = null;
-  return true;
 }

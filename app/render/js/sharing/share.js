@@ -1,58 +1,49 @@
-// Links and set-ups: the query of this page's address is sent to the lab once, and a chosen file is read here and sent as text;
-// of a replay, the set-up file in it. The lab checks both. A link from the lab is shown with this page's own address. After a
-// change of a shared lab, the page that made it shows its own sentence.
+// Links and set-ups: the lab opens the query of this page's address, and a chosen file, which is read here; of a replay, the
+// set-up file in it. The lab checks both. A link from the lab is shown with this page's own address. After a change of a shared
+// lab, the page that made it shows its own sentence.
 // Plots are saved here as one picture.
 //
 // Of viser this file uses the charts of the page.
 
+import { ask, say } from "../core/channel.js";
 import { page } from "../core/life.js";
 import { notice } from "../core/notice.js";
-import { PAGE, send } from "../core/viewer.js";
+import { PAGE } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
+import { onPress } from "../panel/buttons.js";
 import { chartsOfPage } from "../panel/charts.js";
-import { download, toggleClip } from "./clip.js";
-import { arrive, copyNext } from "./copy.js";
-import { sendText } from "./inbox.js";
-import { labAt, ofLab, setupIn } from "./links.js";
 import { rowsOf } from "../panel/rows.js";
+import { download, toggleClip } from "./clip.js";
+import { copy } from "./copy.js";
+import { labAt, ofLab, setupIn } from "./links.js";
+import { open } from "./open.js";
 
-const MAX_LENGTH = 5000; // [characters] that the lab takes
+const MAX_LENGTH = 5000; // [characters] of a set-up file
+const ANSWER_TIME = 10_000; // [ms] for the lab to make a link
 const MAX_REPLAY = 2e8; // [bytes] of a replay
 const asked = new URLSearchParams(location.search);
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
 
-// Request a file from the server, by a hidden button of the panel.
-/** @param {string} value */
-function make(value) {
-  send(document.querySelector("[data-springtide-makers]")?.dataset.springtideMakers, value);
-}
-
-const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
+const own = `[data-page="${PAGE}"]`, sentences = document.createElement("style");
 sentences.textContent =
-  `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
+  `.springtide-switch${own} .springtide-others, .springtide-switch:not(${own}) .springtide-own { display: none; }`;
 document.head.append(sentences);
 
 const KEYS = /Mac|iP/.test(navigator.platform) ? "⌘C" : "Ctrl+C";
-/** @type {HTMLAnchorElement | null} */
-let latest = null; // the link that this page has asked for
-
-// Say below the link what came of the press.
-/** @param {string} text */
-function sayCopied(text) {
-  const said = document.createElement("div");
-  said.className = "springtide-copied";
-  said.setAttribute("role", "status");
-  said.textContent = text;
-  latest?.parentElement?.querySelector(".springtide-copied")?.remove();
-  latest?.before(said);
-}
+let copied = { link: "", words: "" }; // the link of the last press of this page, and what came of it
 
 async function copyLink() {
   notice("springtide-copy", "");
+  copied = { link: "", words: "" };
+  completeLinks();
+  const link = ask("link", "", ANSWER_TIME).then((query) => labAt(location) + query);
   try {
-    const isCopied = await copyNext(navigator.clipboard, Reflect.get(window, "ClipboardItem")); // which is newer than the oldest browsers
-    if (!isCopied && latest) getSelection()?.selectAllChildren(latest);
-    sayCopied(isCopied ? "Copied to the clipboard:" : `The browser did not copy it. Press ${KEYS} to copy this link:`);
+    const isCopied = await copy(link, navigator.clipboard, Reflect.get(window, "ClipboardItem")); // some browsers have none
+    const words = isCopied ? "Copied to the clipboard:" : `The browser did not copy it. Press ${KEYS} to copy this link:`;
+    copied = { link: await link, words };
+    completeLinks();
+    const shown = document.querySelector(".springtide-link");
+    if (!isCopied && shown) getSelection()?.selectAllChildren(shown);
   } catch (error) {
     if (error instanceof Error && error.message === "late") {
       notice("springtide-copy", "The lab sent no link, so nothing was copied. Press Copy link again.");
@@ -60,15 +51,22 @@ async function copyLink() {
   }
 }
 
-// The lab gives each link a number, so that a second press is answered too.
+// Show a link with the address of this page, and above it what came of a press of this page.
 function completeLinks() {
   /** @type {NodeListOf<HTMLAnchorElement>} */
-  const links = document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])");
+  const links = document.querySelectorAll(".springtide-link");
   for (const link of links) {
-    link.dataset.springtideDone = "";
-    link.href = labAt(location) + link.dataset.springtideLink;
-    link.textContent = link.href;
-    if (arrive(link.href)) latest = link;
+    const address = labAt(location) + link.dataset.query;
+    if (link.textContent !== address) link.href = link.textContent = address;
+    const words = copied.link === address ? copied.words : "", above = link.previousElementSibling;
+    if ((above?.textContent ?? "") === words) continue;
+    above?.remove();
+    if (!words) continue;
+    const said = document.createElement("div");
+    said.className = "springtide-copied";
+    said.setAttribute("role", "status");
+    said.textContent = words;
+    link.before(said);
   }
 }
 
@@ -146,26 +144,23 @@ page.listen(document, ["pointerdown", "keydown"], ({ isTrusted, target }) => {
 // Choice in a list of the panel, if it is there.
 /** @param {string} selector */
 const choiceOf = (selector) => /** @type {HTMLSelectElement | null} */ (document.querySelector(selector))?.value;
-page.listen(document, "click", (event) => {
-  const button = event.target instanceof Element && event.target.closest("button");
-  if (!button) return;
-  if (button.textContent === "Copy link") copyLink();
-  if ("springtideClip" in button.dataset) toggleClip();
-  if (!("springtideCharts" in button.dataset)) return;
-  const form = choiceOf("[data-springtide-plots]");
-  form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);
-}, { capture: true });
+onPress("link", copyLink);
+onPress("save", () => say("save", ""));
+onPress("clip", toggleClip);
+onPress("plots", (button) => {
+  const form = choiceOf("[data-springtide-choice=plots]");
+  form === "PNG" ? saveCharts(button) : say("plots", `Plots as ${form}`);
+});
 page.listen(document, "change", async (event) => {
   const field = event.target;
-  if (!(field instanceof HTMLInputElement) || !("springtideLoad" in field.dataset) || !field.files?.length) return;
+  if (!(field instanceof HTMLInputElement) || !field.matches(".springtide-load input") || !field.files?.length) return;
   const file = field.files[0];
   let text = await file.slice(0, 4 * MAX_LENGTH).text();
   if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
     text = setupIn(await file.text()) ?? text;
   }
-  // A text that is too long is sent up to the lab's limit, so that the lab reports the error.
-  sendText(text.slice(0, MAX_LENGTH) || " ");
+  open(text.slice(0, MAX_LENGTH + 1)); // of a longer one the lab says so
   field.value = "";
 });
-if (["scene", "task", "compare"].some((name) => asked.has(name))) sendText(ofLab(location.search));
+if (["scene", "task", "compare"].some((name) => asked.has(name))) open(ofLab(location.search));
 onControls(update);

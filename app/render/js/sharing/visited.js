@@ -3,17 +3,17 @@
 // Each entry of the browser's history holds the query of a scene and preset. Going back sends it to the lab as a link would.
 // The address does not change, so that a reload shows the present lab. A lab embedded in another page adds no entries.
 
+import { onTopic } from "../core/channel.js";
 import { page } from "../core/life.js";
-import { onChange } from "../core/watch.js";
-import { sendText } from "./inbox.js";
+import { open } from "./open.js";
 
 const PATIENCE = 10_000; // [ms] for the lab to show the requested scene
 let here = ""; // the query of the scene and preset shown
 /** @type {{ query: string, until: number } | null} */
 let asked = null; // requested by Back or Forward
 
-function follow() {
-  const query = document.querySelector("[data-springtide-here]")?.dataset.springtideHere;
+/** @param {string | undefined} query */
+function follow(query) {
   if (!query || query === here) return;
   const isFirst = !here, isAwaited = asked !== null && performance.now() < asked.until;
   if (!isAwaited || asked?.query === query) asked = null;
@@ -27,7 +27,7 @@ if (window.top === window) {
     const query = state?.springtide;
     if (!query || (query === here && !asked)) return;
     asked = { query, until: performance.now() + PATIENCE };
-    sendText(query);
+    open(query);
   });
-  onChange(follow);
+  onTopic("acts", (acts) => follow(acts?.here));
 }

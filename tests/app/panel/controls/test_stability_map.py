@@ -15,6 +15,7 @@ from app.scenes.rope.scene import build
 from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step
 from sim.validation import ConvergenceError
+from tests.app.channels import FakeChannel
 
 
 class Handle:
@@ -46,7 +47,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 def make(params: Any) -> tuple[live.StabilityMapPanel, dict[str, float]]:
     """A map and what its clicks have set."""
     taken: dict[str, float] = {}
-    return live.StabilityMapPanel(Gui(), SCENE.stability_map, lambda: params, taken.update), taken
+    return live.StabilityMapPanel(Gui(), SCENE.stability_map, lambda: params, taken.update, FakeChannel()), taken
 
 
 @pytest.mark.usefixtures("small")
@@ -105,8 +106,8 @@ def test_a_map_of_other_parameters_says_so():
     assert axes.is_of(moved)
     other = dataclasses.replace(params, damping=0.0)
     assert not axes.is_of(other)
-    assert "Settings have changed: measure again" in live.picture(axes, [], other, "")
-    assert "measure again" not in live.picture(axes, [], moved, "")
+    assert "Settings have changed: measure again" in live.picture(axes, [], other)
+    assert "measure again" not in live.picture(axes, [], moved)
 
 
 @pytest.mark.usefixtures("small")
@@ -165,7 +166,7 @@ def test_leaving_the_scene_stops_the_measurement():
 
 def test_the_map_has_its_axes():
     axes = live.axes_of(RopeParams(), "stiffness")
-    picture = live.picture(axes, [], RopeParams(), "")
+    picture = live.picture(axes, [], RopeParams())
     assert "time step h [s]" in picture
     assert "stiffness [N/m]" in picture
     assert picture.count(">10⁴</text>") == 1

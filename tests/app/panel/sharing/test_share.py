@@ -25,5 +25,5 @@ def test_an_undo_names_the_scene_of_the_first_set_up() -> None:
 def test_the_line_of_a_change_has_the_page_that_made_it_and_what_is_shown() -> None:
     setup = make_setup(scene_named("rope"), "Pendulum")
     words = SceneSwitch("a-page", "rope", setup, setup).words()
-    assert 'data-springtide-changer="a-page"' in words
+    assert 'data-page="a-page"' in words
     assert words.count("<b>Rope</b> (Pendulum)") == 2

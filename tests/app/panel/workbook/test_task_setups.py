@@ -11,7 +11,7 @@ from app.lab.student.workbook import Workbook
 from app.panel.sharing.share import Share
 from app.panel.workbook.task_setups import read_link, setup_of_task
 from app.server.viewer import Viewer
-from tests import coroutines
+from tests.app.channels import say
 from tests.waiting import wait_for
 
 NUMBERS = itertools.count()  # of texts from a page
@@ -88,5 +88,4 @@ def shown_task(lab: Viewer) -> str:
 def follow(share: Share, query: str) -> None:
     """Do what a page does that has this query in its address."""
     client = SimpleNamespace(client_id=1, add_notification=lambda title, body, **how: pytest.fail(body))
-    share.inbox.value = f"page {next(NUMBERS)}\n{query}"
-    coroutines.run(share.on_inbox(SimpleNamespace(client=client)))
+    say(share.channel, "open", query, client=client)

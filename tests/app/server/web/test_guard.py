@@ -32,6 +32,7 @@ from app.server.web.guard import (
     open_server,
 )
 from tests import coroutines
+from tests.app.channels import text_of
 from tests.stress.clients import CAMERA, Clients
 from tests.waiting import wait_for
 
@@ -202,8 +203,8 @@ async def follow_a_link_while_somebody_looks(lab: Viewer) -> None:
     address, sharing = f"ws://127.0.0.1:{lab.port}", lab.panel.share
     link = {
         "type": "GuiUpdateMessage",
-        "uuid": sharing.inbox._impl.uuid,
-        "updates": {"value": "x\n?scene=rope&points=9"},
+        "uuid": uuid_of(sharing.channel.field),
+        "updates": {"value": text_of("open", "?scene=rope&points=9")},
     }
     async with (
         connect(address, subprotocols=[PROTOCOL], max_size=None, max_queue=None) as first,

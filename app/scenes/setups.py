@@ -408,7 +408,7 @@ def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
 def check_length(what: str, text: str) -> None:
     """Raises ValueError for a text longer than any set-up."""
     if len(text) > MAX_LENGTH:
-        raise argument_error(what, f"{len(text)} characters", f"at most {MAX_LENGTH}")
+        raise argument_error(what, f"more than {MAX_LENGTH} characters", f"at most {MAX_LENGTH}")
 
 
 def shortened(text: str) -> str:

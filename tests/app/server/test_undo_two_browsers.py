@@ -146,6 +146,11 @@ class TwoBrowsers:
         node = PULLED.get(self.scene)
         if node is not None:
             browser, index = self.browser, self.rng.randrange(4)
+            nodes = self.lab.server.scene._handle_from_node_name  # type: ignore[attr-defined]
+            await until(lambda: node in nodes and self.lab.served.drawn > 0)  # a person drags what is drawn
+            drawn = self.lab.served.drawn
+            await self.step()
+            await until(lambda: self.lab.served.drawn > drawn)  # with the points of the present run
             self.dragged()
             for phase in ("start", "update"):
                 await self.say_drag(browser, node, phase, index)

@@ -107,7 +107,8 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
         ({"scene": "rope", "parameters": {"points": -4}}, "points: -4 is not allowed"),
         ("<script>alert(1)</script>", "or a recording (.npz) of Springtide"),
         ("PK\x03\x04", "'a recording (.npz)' is not allowed"),
-        ("x" * 100_000, "not a JSON file"),
+        ("x" * 100_000, "'more than 5000 characters' is not allowed"),
+        ("x" * 5000, "not a JSON file"),
     ):
         load(tab, tmp_path / "b.json", content)
         tab.wait(lambda words=words: words in tab.page.locator("body").inner_text(), 20)

@@ -150,7 +150,7 @@ class Control:
 
     def set(self, value: object, client: int | None = None) -> None:
         """Pass a value to the settings, and show the accepted one. client: the browser that sent it."""
-        self.settings.set(self.name, value, client)
+        self.settings.set_all({self.name: value}, client)
         self.show_value()
 
     def refuse(self, reason: str) -> None:

@@ -1,6 +1,7 @@
 """The runs of a scene: the present one, its steps within the budget of a frame, and the undo of its start."""
 
 import collections
+import functools
 import itertools
 import traceback
 from collections.abc import Callable
@@ -445,7 +446,7 @@ class RunSequence:
         else:
             self.end_replay()
             run.fixed_step.cost_unknown = True
-            run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
+            run.guarded(functools.partial(scene.change_forces, params), OTHER_FORCES)
             scene.params = params  # even if the scene failed, so that a reset uses them
 
     def begin_and_change(self, beginning: Callable[[], None], params: BaseParams) -> None:

@@ -21,7 +21,7 @@ from app.render.cameras import place_cameras
 from app.render.client_page import with_ours
 from app.render.handles.viser_inside import change_buffers
 from app.render.injection import record_shaders
-from app.render.markup.html import Html, fill, join
+from app.render.markup.html import Html, fill, join, plain_table
 from app.render.scripts import BEFORE_REPLAY, REPLAY
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import view_named
@@ -111,14 +111,12 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
 def about_html(kind: AnyKind, params: BaseParams, plotted: Plotted, start: float, end: float) -> Html:
     """Description of the replay: the scene, all parameters, and the plots between two times [s]."""
     charts = join(chart.svg for chart in plot_charts(kind, plotted.between(start, end)))
-    table = join(
-        fill(
-            "<tr><td>{}</td><td>{} {}</td></tr>", p.title or in_words(name), write_value(getattr(params, name)), p.unit
-        )
+    values = plain_table(
+        (p.title or in_words(name), f"{write_value(getattr(params, name))} {p.unit}")
         for name, p in parameters_of(params).items()
     )
     return fill(
         "<style>{}</style><details id='springtide-about'><summary>{}: t = {:.2f} to {:.2f} s</summary>"
-        "{}<table>{}</table></details>",
-        Html(STYLE), kind.title, start, end, charts, table,
+        "{}{}</details>",
+        Html(STYLE), kind.title, start, end, charts, values,
     )  # fmt: skip

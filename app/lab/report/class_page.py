@@ -13,7 +13,7 @@ from app.lab.course.task import Task
 from app.lab.report.classroom import Student
 from app.lab.report.report import state_class
 from app.lab.report.rope_picture import svg
-from app.render.markup.html import Html, fill, join
+from app.render.markup.html import Cell, Html, fill, join, plain_table
 
 SIGNS = {
     "right": "✓",
@@ -98,55 +98,52 @@ def rows(students: Sequence[Student]) -> Html:
     begun = sum(any(result.state != "not begun" for result in student.results) for student in ready)
     busy = f", {len(students) - len(ready)} being checked" if len(ready) < len(students) else ""
     names = folder_names(student.folder for student in students)
-    body = join(student_row(student, names[student.folder]) for student in students)
+    head = ("Folder", "Current task and mistake", Cell("Right", "number"), "Tasks", Cell("Rope", "wide"))
+    table = plain_table((student_row(student, names[student.folder]) for student in students), head, "class")
     return fill(
         '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page updates as files are saved.</p>{}'
-        '<h2>Students</h2><table class="class"><thead><tr><th>Folder</th><th>Current task and mistake</th>'
-        '<th class="number">Right</th><th>Tasks</th><th class="wide">Rope</th></tr></thead>'
-        "<tbody>{}</tbody></table>"
+        "<h2>Students</h2>{}"
         '<p class="faint small">✓ right, ✗ wrong or does not run, ● not complete, · not begun. Ropes fall '
         "for one second from the horizontal; the reference's last shape is dashed.</p>",
-        len(students), begun, busy, mistakes_table(ready, names), body,
+        len(students), begun, busy, mistakes_table(ready, names), table,
     )  # fmt: skip
 
 
 def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Html:
     """The mistakes of the class, the most frequent first. names: of the folders."""
     found = mistakes((names[student.folder], student.results) for student in students)
-    lines = join(
-        fill(
-            '<tr><td class="number"><b>{}</b></td><td>{}</td><td>{}</td><td class="faint">{}</td></tr>',
-            len(mistake.folders), mistake.place, shortened(mistake.text), ", ".join(mistake.folders),
+    rows = (
+        (
+            Cell(fill("<b>{}</b>", len(mistake.folders)), "number"), mistake.place, shortened(mistake.text),
+            Cell(", ".join(mistake.folders), "faint"),
         )
         for mistake in found
     )  # fmt: skip
     nothing = fill('<p class="faint">None.</p>')
-    return fill("<h2>Mistakes now</h2>{}", fill('<table class="mistakes">{}</table>', lines) if found else nothing)
+    return fill("<h2>Mistakes now</h2>{}", plain_table(rows, name="mistakes") if found else nothing)
 
 
-def student_row(student: Student, name: str) -> Html:
-    """One student: the task and its mistake, or the first mistake of any; number of right tasks, all tasks, the rope.
+def student_row(student: Student, name: str) -> tuple[Cell, ...]:
+    """Cells of one student: task and mistake, or the first mistake of any; number of right tasks, all tasks, the rope.
 
     name: of the folder.
     """
     if not student.results:
-        return fill(
-            '<tr><td class="name">{}</td><td colspan="4" class="faint">{}</td></tr>',
-            name, student.error or "being checked …",
-        )  # fmt: skip
+        return Cell(name, "name"), Cell(student.error or "being checked …", "faint", 4)
     at = present_task(student.results, student.at)
     count = sum(result.state == "right" for result in student.results if not result.task.optional)
     total = sum(not result.task.optional for result in student.results)
     text = student.error or present_mistake(student.results, student.at)
     where = " ".join(filter(None, [at.task.title if at else "nothing begun", student.changed_at]))
-    return fill(
-        '<tr data-student="{}"><td class="name">{}<br><span class="faint small">{}</span></td>'
-        '<td class="text">{} <span class="faint small">{}</span><br><span class="small">{}</span></td>'
-        '<td class="number">{} of {}</td><td><span class="strip">{}</span><br><span class="faint small">{}</span></td>'
-        '<td class="wide">{}</td></tr>',
-        name, name, student.name, at.task.item if at else "–", where, shortened(text), count, total,
-        strip(student), standing(student.results), rope(student),
-    )  # fmt: skip
+    said = '{} <span class="faint small">{}</span><br><span class="small">{}</span>'
+    tasks = '<span class="strip">{}</span><br><span class="faint small">{}</span>'
+    return (
+        Cell(fill('{}<br><span class="faint small">{}</span>', name, student.name), "name"),
+        Cell(fill(said, at.task.item if at else "–", where, shortened(text)), "text"),
+        Cell(f"{count} of {total}", "number"),
+        Cell(fill(tasks, strip(student), standing(student.results))),
+        Cell(rope(student), "wide"),
+    )
 
 
 def rope(student: Student) -> Html:

@@ -17,7 +17,7 @@ from app.lab.course.task import Task
 from app.lab.diagnosis.equation_html import equation_lines
 from app.lab.report.chart import chart
 from app.render.markup.formula import formula
-from app.render.markup.html import Html, fill, join
+from app.render.markup.html import Cell, Html, fill, join, plain_table, table_row
 
 MAX_CODE = 20_000  # characters of a student's file, shown at most
 MAX_PICTURE = 4 * 2**20  # [bytes]
@@ -72,15 +72,12 @@ def class_overview(results: Sequence[FolderResult], names: Mapping[Path, str]) -
         (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
         name = result.answers.name or "no name given"
         rows.append(
-            fill(
-                '<tr><td><a href="#student-{}">{}</a></td><td>{}</td><td>{} of {}</td><td>{} of {}</td></tr>',
-                number, names[result.folder], name, right, count, more, optional,
+            (
+                fill('<a href="#student-{}">{}</a>', number, names[result.folder]), name,
+                f"{right} of {count}", f"{more} of {optional}",
             )
         )  # fmt: skip
-    return fill(
-        "<h1>Overview</h1><table><tr><th>folder</th><th>name</th><th>right</th><th>optional</th></tr>{}</table>",
-        join(rows),
-    )
+    return fill("<h1>Overview</h1>{}", plain_table(rows, ("folder", "name", "right", "optional")))
 
 
 def student_section(result: FolderResult, number: int, title: str) -> Html:
@@ -117,16 +114,19 @@ def not_begun(result: FolderResult) -> Html:
 
 def overview(result: FolderResult, number: int) -> Html:
     """The state of each task under way, with a link to its section."""
-    rows = join(
-        fill(
-            '<tr><td>{}</td><td><a href="#student-{}-{}">{}</a>{}</td><td class="{}">{}</td></tr>',
-            entry.task.item, number, entry.task.name, entry.task.title,
-            " (optional)" if entry.task.optional else "", state_class(entry.state), entry.state,
+    rows = (
+        (
+            entry.task.item,
+            fill(
+                '<a href="#student-{}-{}">{}</a>{}', number, entry.task.name, entry.task.title,
+                " (optional)" if entry.task.optional else "",
+            ),
+            Cell(entry.state, state_class(entry.state)),
         )
         for entry in result.tasks
         if entry.state != "not begun"
     )  # fmt: skip
-    return fill('<table class="overview">{}</table>', rows)
+    return plain_table(rows, name="overview")
 
 
 def state_class(state: str) -> str:
@@ -196,16 +196,16 @@ def answers_of(answers: Answers, entry: TaskResult) -> Html:
     above = [part for part in ("Predict", "Measure") if cells[part]]
     explained = join(answer_text(answer) for answer in cells["Explain"])
     looked_at = "The program's answer was viewed in the panel."
+    width = 3 - len(above)
+    rows = [
+        table_row((Cell(PARTS[part], columns=width) for part in above), "th"),
+        table_row(Cell(join(answer_text(answer) for answer in cells[part]), columns=width) for part in above),
+    ]
+    if explained:
+        rows += [table_row([Cell(PARTS["Explain"], columns=2)], "th"), table_row([Cell(explained, columns=2)])]
     return fill(
-        '<table class="answers"><tr>{}</tr><tr>{}</tr>{}</table>{}',
-        join(fill('<th colspan="{}">{}</th>', 3 - len(above), PARTS[part]) for part in above),
-        join(
-            fill('<td colspan="{}">{}</td>', 3 - len(above), join(answer_text(answer) for answer in cells[part]))
-            for part in above
-        ),
-        fill('<tr><th colspan="2">{}</th></tr><tr><td colspan="2">{}</td></tr>', PARTS["Explain"], explained)
-        if explained
-        else Html(),
+        '<table class="answers">{}</table>{}',
+        join(rows),
         fill('<p class="faint">{}</p>', looked_at) if answers.is_shown(entry.task) else Html(),
     )  # fmt: skip
 

@@ -5,7 +5,7 @@ source, which pyright checks, so that no text from outside can be taken for HTML
 """
 
 from collections.abc import Iterable, Sequence
-from typing import LiteralString
+from typing import LiteralString, NamedTuple
 
 import markupsafe
 
@@ -66,9 +66,32 @@ def info(text: str, section: str) -> Html:
     )
 
 
+class Cell(NamedTuple):
+    """A cell of a table with a name for the style sheet, over several columns."""
+
+    content: object
+    name: str = ""
+    columns: int = 1
+
+
 def table_row(cells: Iterable[object], tag: LiteralString = "td") -> Html:
-    """A row of a table. The style sheet puts the first cell to the left, and the others, numbers, to the right."""
-    return fill("<tr>{}</tr>", join(fill("<{0}>{1}</{0}>", tag, cell) for cell in cells))
+    """A row of cells or their contents. The panel puts the first to the left, and the others, numbers, to the right."""
+    made = (cell if isinstance(cell, Cell) else Cell(cell) for cell in cells)
+    return fill("<tr>{}</tr>", join(table_cell(cell, tag) for cell in made))
+
+
+def table_cell(cell: Cell, tag: LiteralString) -> Html:
+    """A cell; without a name and over one column it has no attributes."""
+    name = fill(' class="{}"', cell.name) if cell.name else Html()
+    width = fill(' colspan="{}"', cell.columns) if cell.columns > 1 else Html()
+    return fill("<{0}{1}{2}>{3}</{0}>", tag, name, width, cell.content)
+
+
+def plain_table(rows: Iterable[Iterable[object]], head: Sequence[object] = (), name: str = "") -> Html:
+    """A table of a page without the panel. rows, head: cells or their contents; name: for the style sheet."""
+    top = fill("<thead>{}</thead>", table_row(head, "th")) if head else Html()
+    body = join(table_row(row) for row in rows)
+    return fill("<table{}>{}<tbody>{}</tbody></table>", fill(' class="{}"', name) if name else Html(), top, body)
 
 
 def table_head(columns: Iterable[tuple[object, object]]) -> Html:

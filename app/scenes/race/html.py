@@ -4,6 +4,7 @@ from app.formats.formatting import metres, metres_above, number, percent, second
 from app.render.markup.html import (
     ERROR_COLOUR,
     WRONG_COLOUR,
+    Cell,
     Html,
     bold,
     coloured,
@@ -53,15 +54,16 @@ def stability_text(result: Result) -> Html:
 def result_rows(result: Result, stiffness_differs: bool) -> Html:
     """One rope: a row with its name, and one with its numbers or with the reason why it has stopped."""
     corrections = f", {result.corrections:.1f} corrections a step" if result.corrections else ""
-    name = fill(
-        '<tr><td colspan="5" style="padding-top:5px"><span class="springtide-dot" style="background:{}"></span> '
-        "<b>{}</b>{}</td></tr>",
+    title = fill(
+        '<div style="padding-top:5px"><span class="springtide-dot" style="background:{}"></span> <b>{}</b>{}</div>',
         PALETTE[result.number - 1],
         rope_name(result, stiffness_differs),
         corrections,
     )
+    name = table_row([Cell(title, columns=len(HEAD))])
     if result.failure:
-        return fill('{}<tr><td colspan="5" style="color:{}">{}</td></tr>', name, ERROR_COLOUR, result.failure)
+        failure = fill('<span style="color:{}">{}</span>', ERROR_COLOUR, result.failure)
+        return join((name, table_row([Cell(failure, columns=len(HEAD))])))
     cells = (
         error_text(result),
         energy_text(result),

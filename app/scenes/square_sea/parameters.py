@@ -186,7 +186,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Steep waves split into groups": {
         "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
         "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
-        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "platform", "plot_wave_gauge": True,
     },
     "Draupner": {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,

@@ -29,7 +29,7 @@ from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files
-from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
+from app.scenes.setups import CHANGES, FILES, Setup, file_name, make_setup, with_changes
 from sim.parameters import (
     Effect,
     Parameter,
@@ -125,12 +125,14 @@ class SceneSettings:
 
     @property
     def other_name(self) -> str:
-        """Name shown instead of the loaded preset's if an effective parameter differs from it; otherwise ""."""
+        """Name shown instead of the loaded preset's if an effective parameter, or a file, differs from it; else ""."""
         look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
-        if not changed_names(self.params_of(self.loaded), self.params) - look:
+        is_edited = tuple(getattr(self.params, CHANGES, ())) != tuple(self.setup_of(self.loaded).changes)
+        if not is_edited and not changed_names(self.params_of(self.loaded), self.params) - look:
             return ""
         files = [file_name(path) for field in FILES.values() if (path := getattr(self.params, field, ""))]
-        return ", ".join(files) or f"{self.loaded} (changed)"
+        name = ", ".join(files) or self.loaded
+        return f"{name} (changed)" if is_edited or not files else name
 
     # ----- changes
 

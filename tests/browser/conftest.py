@@ -91,10 +91,10 @@ HOLD_TIME = 5.0  # [s] after which a drag that grabs nothing is repeated
 STUCK = 0.6  # of the time of a test, after which its browser is ended
 
 
-def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
+def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "", **device: Any) -> Any:
     """drawn: True with pixels, or a word in the fragment shaders that are kept. flat: with `drawn` True, a word in
-    those that are replaced."""
-    page = chromium.new_page(viewport={"width": width, "height": height})
+    those that are replaced. device: options of Playwright's."""
+    page = chromium.new_page(viewport={"width": width, "height": height}, **device)
     if drawn is not True or flat:
         word = flat or drawn or "no shader has this"
         page.add_init_script(FLAT_SHADERS.replace("IS_FLAT", f'{"" if flat else "!"}source.includes("{word}")'))
@@ -188,10 +188,11 @@ class Tab:
         query: str = "",
         address: str = "",
         ratio: float = PIXEL_RATIO,
+        **device: Any,
     ) -> None:
-        """drawn, flat: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn pixels
-        per pixel of the page, in each direction."""
-        self.new_page = lambda: new_page(chromium, width, height, drawn, flat)
+        """drawn, flat, device: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn
+        pixels per pixel of the page, in each direction."""
+        self.new_page = lambda: new_page(chromium, width, height, drawn, flat, **device)
         self.address = f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={ratio:g}{query}"
         self.followed = 0  # number of scenes that were opened for it
         self.open()

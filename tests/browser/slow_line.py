@@ -88,25 +88,31 @@ class Line:
         waiting: asyncio.Queue[tuple[float, bytes]] = asyncio.Queue()
         delivery = asyncio.ensure_future(self.deliver(waiting, target))
         try:
-            while part := await source.read(CHUNK):
-                free = max(free, self.loop.time()) + len(part) / self.rate
-                waiting.put_nowait((free + self.delay, part))
-                # The router takes more once this is all that waits in it.
-                await asyncio.sleep(max(0.0, free - self.buffer / self.rate - self.loop.time()))
+            with contextlib.suppress(ConnectionError):  # a reset is an end, too
+                while part := await source.read(CHUNK):
+                    free = max(free, self.loop.time()) + len(part) / self.rate
+                    waiting.put_nowait((free + self.delay, part))
+                    # The router takes more once this is all that waits in it.
+                    await asyncio.sleep(max(0.0, free - self.buffer / self.rate - self.loop.time()))
             waiting.put_nowait((free + self.delay, b""))
             await delivery  # until all has arrived
         finally:
             delivery.cancel()
 
     async def deliver(self, waiting: "asyncio.Queue[tuple[float, bytes]]", target: asyncio.StreamWriter) -> None:
-        """Hand over what has arrived, until the end of it."""
+        """Hand over what has arrived, and the end of it."""
         while True:
             arrival, part = await waiting.get()
             await asyncio.sleep(max(0.0, arrival - self.loop.time()))
-            if not part or target.is_closing():
+            if target.is_closing():
                 return
             if target not in self.dead:
-                target.write(part)
+                if part:
+                    target.write(part)
+                else:
+                    target.write_eof()
+            if not part:
+                return
 
 
 @contextlib.contextmanager

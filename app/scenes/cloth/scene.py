@@ -265,6 +265,7 @@ class ClothScene(NetScene[ClothParams]):
             threads=self.tuner.threads,
             left_out=self.state.left_out,
             unsettled=self.state.unsettled,
+            implicit_steps=self.state.steps if self.motion.method.implicit else 0,
         )
 
     def frame(self) -> ClothFrame:

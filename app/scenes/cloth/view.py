@@ -85,6 +85,13 @@ def reach_of(params: ClothParams) -> np.ndarray:
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
+def unsettled_words(readings: ClothReadings) -> str:
+    """Where the solver had not settled: of how many steps, and what helps."""
+    if not readings.implicit_steps:
+        return counted(readings.unsettled, "kick")
+    return f"{number(readings.unsettled)} of {counted(readings.implicit_steps, 'step')}: use a smaller time step"
+
+
 class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
@@ -182,7 +189,7 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         if readings.corrections:
             parts.append(fill("<div>{:.1f} corrections a step</div>", readings.corrections))
         if readings.unsettled:
-            parts.append(fill("<div>the solver had not settled in {}</div>", counted(readings.unsettled, "step")))
+            parts.append(fill("<div>the solver had not settled in {}</div>", unsettled_words(readings)))
         if readings.left_out:
             parts.append(
                 fill("<div>too crowded: self-collision left out {}</div>", counted(readings.left_out, "particle"))

@@ -18,6 +18,7 @@ from app.scenes.sea_parameters import (
 )
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
 from sim.parameters import parameter, with_parameters
+from sim.water import EARTH_GRAVITY
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
@@ -34,10 +35,12 @@ VIEW_TITLES = {
     **{name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
     "gauge": "Beside the wave gauge",
 }
+# [m/s2] of each body. The Earth has that of a planet of its mass, and of the other scenes.
+GRAVITIES = {**{name: planet.gravity for name, planet in SOLAR_SYSTEM.items()}, "Earth": EARTH_GRAVITY}
 PLANET_TITLES = {
     "by mass": "By mass",
     "by gravity": "By gravity",
-    **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
+    **{name: f"{name}, {number(g)} m/s²" for name, g in GRAVITIES.items()},
 }
 GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile
 MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
@@ -186,7 +189,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Steep waves split into groups": {
         "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
         "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
-        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "platform", "plot_wave_gauge": True,
     },
     "Draupner": {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
@@ -290,7 +293,7 @@ def gravity(params: SquareSeaParams) -> float:
         return params.gravity
     if params.planet == "by mass":
         return gravity_of(params.planet_mass, params.radius_rule)
-    return SOLAR_SYSTEM[params.planet].gravity
+    return GRAVITIES[params.planet]
 
 
 def conditions(params: SquareSeaParams, wind_speed: float | None = None) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from app.panel.settings import Placing, SceneSettings
 from app.render.cameras import ClientCamera
 from app.scenes import scene_named
 from app.scenes.contract import Advice
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.setups import Setup
 from sim.parameters import Effect
@@ -89,6 +90,18 @@ def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: T
     settings.undo()
     assert settings.params == RopeParams()
     assert told.posted[-1] == GoBack(RopeParams(), 1)
+
+
+def test_a_file_whose_lines_were_changed_says_so_in_the_list_of_presets(told: Told) -> None:
+    server: Any = SimpleNamespace(get_clients=dict)
+    kind, params = scene_named("mooring"), MooringParams(moordyn_file="three.txt")
+    settings = SceneSettings(server, kind, params, told.posted.append, told.asked.append, {"mooring": params})
+    edited = dataclasses.replace(params, file_changes=(("length", "1", 192.0),))
+    names = []
+    for shown in (params, dataclasses.replace(params, depth=70.0), edited):
+        settings.params = shown
+        names.append(settings.other_name)
+    assert names == ["", "three.txt", "three.txt (changed)"]
 
 
 def test_an_error_of_one_watcher_silences_no_other(told: Told) -> None:

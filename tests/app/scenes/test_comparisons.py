@@ -71,7 +71,7 @@ def test_what_cannot_be_set_side_by_side_is_refused_in_one_line(
 
 def test_only_what_differs_and_means_something_is_said() -> None:
     earth, mars = panes("?scene=square_sea&planet=Earth&sky=park", "?scene=square_sea&planet=Mars&sky=sunset")
-    assert differences([earth, mars]) == [["Planet: Earth, 9.82 m/s²"], ["Planet: Mars, 3.73 m/s²"]]
+    assert differences([earth, mars]) == [["Planet: Earth, 9.81 m/s²"], ["Planet: Mars, 3.73 m/s²"]]
     by_mass, own = panes("?scene=square_sea", "?scene=square_sea&planet=by+gravity&gravity=3.71")
     assert differences([by_mass, own]) == [["Planet: By mass"], ["Planet: By gravity", "Gravity: 3.71 m/s²"]]
     clean, oil = panes("?scene=radial_sea", "?scene=radial_sea&spill=layer&thickness=0.5")

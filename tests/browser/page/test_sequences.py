@@ -10,19 +10,28 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import msgspec
 import pytest
 
 from app.server.viewer import Viewer
 from app.server.web import page as served_page
+from tests import coroutines
+from tests.app.server.web.test_beat import page as connected
 from tests.browser.conftest import CHROMIUM, FLAGS, new_page, surroundings
 from tests.browser.page.test_lost import FAST, MAX_BACK, MAX_SILENT, SHOWN, SLOW_MACHINE, wait_shown
 from tests.browser.slow_line import slow_line
+from tests.stress.clients import CAMERA
+from tests.waiting import wait_for
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 SLEEP = 15.0  # [s] of the page
-MAX_GHOST = 45.0  # [s] until a lab drops a connection that has died: websockets asks each 20 s, and waits as long
+MAX_GHOST = 2.0  # [s] until the lab has let go of the connection that the page has left
 MAX_RELOAD = 60.0  # [s] until a page that was loaded again shows the run
+# How often the browser took the page from its cache, over the reload that follows.
+COUNT_CACHED = """addEventListener("pageshow", (event) => {
+    if (event.persisted) sessionStorage.fromCache = 1 + Number(sessionStorage.fromCache ?? 0); });"""
+FROM_CACHE = "Number(sessionStorage.fromCache ?? 0)"
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +51,7 @@ class Sequence:
         """rename: gives the server another name, as another process has."""
         self.line, self.lab, self.rename, self.numbers = line, lab, rename, itertools.count(1)
         self.page = new_page(browser, 480, 320, drawn=False)
+        self.page.add_init_script(COUNT_CACHED)
         self.page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
         self.devtools = self.page.context.new_cdp_session(self.page)
         self.goes_on(MAX_RELOAD)
@@ -153,18 +163,20 @@ class Sequence:
         self.lab.shut()
         self.says_why("has stopped", 40.0)
 
-    def cache(self) -> None:
-        """A person leaves the page, and comes back."""
+    def leave_and_come_back(self, meanwhile: Callable[[], None]) -> None:
+        """A person leaves the page, and goes back to it: the browser shows the page that it has kept."""
+        before = self.page.evaluate(FROM_CACHE)
         self.page.goto("about:blank")
-        self.page.wait_for_timeout(2000)
+        meanwhile()
         self.page.go_back()
         self.goes_on(MAX_RELOAD)
+        assert self.page.evaluate(FROM_CACHE) == before + 1
+
+    def cache(self) -> None:
+        self.leave_and_come_back(lambda: self.page.wait_for_timeout(2000))
 
     def cache_and_new_server(self) -> None:
-        self.page.goto("about:blank")
-        self.replace()
-        self.page.go_back()
-        self.goes_on(MAX_RELOAD)
+        self.leave_and_come_back(self.replace)
 
 
 ROWS = (
@@ -189,3 +201,29 @@ def test_a_page_goes_on_after_a_sequence_or_says_why(caching: Any, monkeypatch: 
         finally:
             sequence.page.close()
             sequence.lab.shut()
+
+
+@pytest.mark.parametrize("is_dead", [False, True])
+def test_the_line_tells_the_lab_of_an_end_unless_the_connection_is_dead(is_dead: bool) -> None:
+    lab = Viewer("127.0.0.1", 0)
+    with slow_line(lab.port, FAST, 0.0) as line:
+
+        async def leave() -> None:
+            """As a browser whose process ends."""
+            async with connected(line.port, "/") as client:
+                await client.send(msgspec.msgpack.encode(CAMERA))
+                while not lab.visitors():
+                    await client.recv()
+                if is_dead:
+                    line.fall_silent()
+                client.transport.abort()
+
+        try:
+            coroutines.run(leave())
+            if is_dead:
+                time.sleep(MAX_GHOST)
+                assert lab.visitors()
+            else:
+                wait_for(lambda: not lab.visitors(), MAX_GHOST)
+        finally:
+            lab.shut()

@@ -42,6 +42,8 @@ def two(request: pytest.FixtureRequest, pair: Pair) -> tuple[Viewer, Tab, Tab]:
     """The lab, the browser that acts first, and the other one; both look at a rope that stands still."""
     viewer, tabs = pair
     viewer.open("rope")
+    viewer.settings.history.settings.clear()  # of the tests before: the choice of a scene is an act
+    viewer.settings.tell()
     viewer.loop.commands.put(Pause())
     for tab in tabs:
         tab.errors.clear()
@@ -270,8 +272,6 @@ def test_a_scene_is_everybodys_and_leaves_to_each_browser_what_is_its_own(two: t
 @pytest.mark.long
 def test_acts_of_two_pages_are_undone_in_either_page(two: tuple[Viewer, Tab, Tab]) -> None:
     viewer, acts, other = two
-    viewer.settings.history.settings.clear()  # of the tests before
-    viewer.settings.tell()
     rope = lambda: acts.pixel(viewer.scene.state.x[:, 0, 6])  # type: ignore[attr-defined]  # noqa: E731
 
     def drag(tab: Tab) -> None:

@@ -29,6 +29,10 @@ SAMPLE = ("square_sea", "Storm arriving", "low")  # it began under a blue sky
 NOTHING_OVER_THE_PICTURE = NO_NOTES + " .mantine-Paper-root { display: none !important }"
 PRESETS = [(scene, preset) for scene in NAMES for preset in scene_named(scene).presets]
 CASES = [(*preset, quality) for preset in PRESETS for quality in QUALITIES]
+PAIRS = {  # of panes side by side
+    "planets": ("?scene=square_sea&planet=Earth", "?scene=square_sea&planet=Mars"),
+    "storms": ("?scene=square_sea&preset=Storm arriving", "?scene=square_sea&preset=Storm over"),
+}
 
 # Holds the photographs back that the server sends: until `letSkyCome` viser's client shows its own.
 LATE_SKY = """const get = window.fetch;
@@ -120,14 +124,36 @@ def test_a_run_stands_at_its_start_in_the_first_whole_picture(
 
 @pytest.mark.stress
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize(
-    "queries",
-    [
-        ("?scene=square_sea&planet=Earth", "?scene=square_sea&planet=Mars"),
-        ("?scene=square_sea&preset=Storm arriving", "?scene=square_sea&preset=Storm over"),
-    ],
-    ids=["planets", "storms"],
-)
+@pytest.mark.parametrize("queries", PAIRS.values(), ids=PAIRS)
+@pytest.mark.parametrize("drawn", [True, False], ids=["slow", "quick"])
+def test_two_panes_stand_at_their_start_in_their_first_whole_pictures(
+    queries: tuple[str, str], drawn: bool, chromium: Any
+) -> None:
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.comparing.begin([read_query(query) for query in queries], True)
+        assert lab.comparison is not None
+        page = new_page(chromium, 700, 300, drawn=drawn)
+        page.add_init_script(WATCH_CLOCK)
+        page.goto(f"http://127.0.0.1:{lab.port}/beside?hideViserLogo")
+
+        def clocks() -> list[str]:
+            shown = [frame.evaluate("window.firstClock ?? ''") for frame in page.frames if "index.html" in frame.url]
+            return [clock for clock in shown if clock]
+
+        assert wait(page, lambda: len(clocks()) == 2, 300.0)
+        found = [re.search(r"t = ([0-9.]+) s", clock) for clock in clocks()]
+        assert wait(page, lambda: all(viewer.scene.time > 0.0 for viewer in lab.comparison.viewers))
+        page.close()
+    finally:
+        lab.shut()
+    assert all(found)
+    assert max(float(clock[1]) for clock in found if clock) <= LATEST
+
+
+@pytest.mark.stress
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("queries", PAIRS.values(), ids=PAIRS)
 def test_the_first_whole_frames_of_two_panes_have_the_colours_of_the_later_ones(
     queries: tuple[str, str], chromium: Any
 ) -> None:

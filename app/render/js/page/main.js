@@ -16,6 +16,7 @@ const PARTS = {
   visited: () => import("../sharing/visited.js"),
   acts: () => import("../panel/acts.js"),
   display: () => import("../panel/display.js"),
+  keys: () => import("../panel/keys.js"),
   accessibility: () => import("../panel/accessibility.js"),
   reach: () => import("./reach.js"),
   drag_hint: () => import("./drag_hint.js"),

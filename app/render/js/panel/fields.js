@@ -7,6 +7,7 @@
 import { tell } from "../core/channel.js";
 import { page } from "../core/life.js";
 import { onControls } from "../core/watch.js";
+import { isTyping } from "./keys.js";
 import { stepped } from "./numbers.js";
 
 const FIELD = "input.mantine-TextInput-input";
@@ -209,8 +210,7 @@ page.listen(document, "keydown", (event) => {
 // C goes to the first control of the shown tab.
 const CONTROL = "input, textarea, .mantine-Slider-thumb, button";
 page.listen(document, "keydown", (event) => {
-  const typing = event.target instanceof Element && event.target.matches("input, textarea, select");
-  if (event.key.toLowerCase() !== "c" || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.key.toLowerCase() !== "c" || isTyping(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   /** @type {NodeListOf<HTMLButtonElement>} */
   const controls = document.querySelectorAll(`[data-dock-area^="gui-tabs-"] :is(${CONTROL}), .mantine-Tabs-panel :is(${CONTROL})`);
   [...controls].find((one) => one.checkVisibility() && !one.disabled)?.focus();

@@ -7,6 +7,7 @@
 import { page } from "../core/life.js";
 import { onChange, onLook } from "../core/watch.js";
 import { onPress } from "./buttons.js";
+import { isTyping } from "./keys.js";
 
 const ENLARGED = "springtide-enlarged", PROJECTING = "springtide-projecting"; // classes of the page
 const CHART = ".uplot-container", MARK = "springtideFillsWindow"; // data attribute of the chart that fills the window
@@ -86,8 +87,7 @@ function end() {
 }
 
 page.listen(document, "keydown", (event) => {
-  const typing = event.target instanceof Element && event.target.matches("input, textarea, select");
-  if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (isTyping(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape") end();
   else if (event.key.toLowerCase() === "l") project(!isIn(PROJECTING));
 });

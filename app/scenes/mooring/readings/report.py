@@ -16,11 +16,12 @@ from app.scenes.quantities import read, written
 from app.scenes.springs.drawing.html import colour_scale, step_mark
 from sim.numerics.extreme_values import LEAST_PEAKS
 
-TENSIONS = "Tensions"  # heading
+TENSIONS, BED = "Tensions", "Bed and slack"  # headings
 EXPECTED = f"3 h: largest tension expected in three hours, by a Weibull distribution of at least {LEAST_PEAKS} peaks."
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
 
+LEAST_DURATION = 1.0  # [s] of the statistics of a run that has stopped, to be shown
 NOISE = 1e-4  # of a line's tension, below which a part of it is shown as 0
 
 
@@ -113,10 +114,14 @@ def offset_text(snapshot: Snapshot) -> Html:
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     said = faint("Slack: the fraction of time, or since when, in which a segment of the line is not stretched.")
-    notes: dict[str, str] = {
-        TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
-        "Bed and slack": join((bed_table(snapshot), said)),
-    }
+    if snapshot.status.halted and read(QUANTITIES, "statistics_duration", snapshot) < LEAST_DURATION:
+        stopped = faint("The run stopped at its start: there are no statistics.")
+        notes: dict[str, str] = {TENSIONS: stopped, BED: ""}
+    else:
+        notes = {
+            TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
+            BED: join((bed_table(snapshot), said)),
+        }
     path = snapshot.params.moordyn_file
     return {"Files": file_text(snapshot.params, snapshot.readings.fault), **notes} if path else notes
 

@@ -294,6 +294,20 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
     assert "corrections a step" in ClothView.readout(object.__new__(ClothView), loop.latest)
 
 
+def test_a_solver_that_has_not_settled_is_told_with_the_steps_and_a_smaller_step_helps():
+    share = []
+    for step in (1 / 60, 1 / 240):
+        scene = ClothScene(ClothParams(integrator="implicit_euler", stiffness=1e5, time_step=step))
+        scene.advance(round(1.0 / step))
+        readings = scene.readings()
+        assert readings.implicit_steps == round(1.0 / step)
+        share.append(readings.unsettled / readings.implicit_steps)
+        words = ClothView.readout(object.__new__(ClothView), Loop(scene, paused=True).latest)
+        said = f"had not settled in {readings.unsettled} of {readings.implicit_steps} steps: use a smaller time step"
+        assert (said in words) is (readings.unsettled > 0)
+    assert share[0] > 0.0 == share[1]
+
+
 def test_the_mesh_has_two_triangles_a_cell_with_the_same_orientation():
     found = faces(4, 6)
     assert found.shape == (2 * 3 * 5, 3)

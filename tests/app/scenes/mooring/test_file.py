@@ -190,7 +190,8 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert "follow" in hidden(MooringParams())
     from types import SimpleNamespace
 
-    snapshot = SimpleNamespace(params=p, frame=scene.frame(), readings=scene.readings())
+    status = SimpleNamespace(halted="")
+    snapshot = SimpleNamespace(params=p, frame=scene.frame(), readings=scene.readings(), status=status)
     notes = notes_of(snapshot)  # type: ignore[arg-type]
     assert "version1.txt" in notes["Files"]
     assert "4 lines, 6 points, 2 of them on the vessel" in notes["Files"]

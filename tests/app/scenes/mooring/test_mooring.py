@@ -30,6 +30,7 @@ from app.scenes.mooring.drawing.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.readings.excursion import MAX_PATH, PATH_INTERVAL
+from app.scenes.mooring.readings.report import BED, TENSIONS, notes_of
 from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.view import MooringView
@@ -225,6 +226,10 @@ def test_a_run_that_begins_with_lines_that_are_too_short_blames_them_and_no_step
     said = "40 m cannot reach an anchor 80 m away in 40 m of water: at least 84.5 m."
     assert loop.run.halted == said
     assert kind.remedy(loop.latest) == Advice("length", 84.5, "84.5 m")
+    notes = notes_of(loop.latest)
+    assert "there are no statistics" in notes[TENSIONS]
+    assert notes[BED] == ""
+    assert "<table" not in notes[TENSIONS]
 
 
 def test_a_checkpoint_goes_on_as_the_run_did():

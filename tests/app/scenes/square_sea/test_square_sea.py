@@ -10,7 +10,14 @@ from app.messages import PointAlong, Reset
 from app.scenes.quantities import measured
 from app.scenes.square_sea import SCENE, report
 from app.scenes.square_sea import scene as square_sea
-from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, conditions, rain_settings
+from app.scenes.square_sea.parameters import (
+    PLANET_TITLES,
+    PRESETS,
+    SquareSeaParams,
+    conditions,
+    gravity,
+    rain_settings,
+)
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.statistics import theory
@@ -435,3 +442,9 @@ def test_a_sweep_records_the_highest_crest_and_the_waves_about_the_peak():
         "height_scatter": stated.scatter, "endless_height": stated.whole,
     }  # fmt: skip
     assert {name: found[name] for name in expected} == expected
+
+
+def test_an_earth_of_the_list_and_one_by_mass_have_one_gravity() -> None:
+    earth, by_mass = SquareSeaParams(planet="Earth"), SquareSeaParams(planet="by mass", planet_mass=1.0)
+    assert gravity(earth) == gravity(by_mass)
+    assert f"{gravity(earth):g} m/s²" in PLANET_TITLES["Earth"]

@@ -33,4 +33,4 @@ class ClothReadings(NamedTuple):
     note: str  # reason why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
     left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
-    unsettled: int = 0  # steps since the start that were taken before the solver had settled
+    unsettled: int = 0  # steps since the start whose solver had not settled, or in which folds were slowed down

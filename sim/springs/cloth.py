@@ -71,7 +71,8 @@ def cloth(
     [N/m] of a link to the next particle, across a cell, and to the next but one; damping [N s/m] of a link. A link
     along an edge, beside half a strip of cloth, has half of both. drag [N s/m] of a particle.
     pinned: "corners" (0, 0) and (0, cols - 1), "edge" between them, "all corners", "rim", "free", or the particles.
-    thickness [m]: nearer particles push with the contact's stiffness; 0: they pass. air: wind. The rest: as of `rope`.
+    thickness [m]: nearer particles push with the contact's stiffness, and with explicit methods no part of the cloth
+    passes another, at any thickness above 0; 0: they pass. air: wind. The rest: as of `rope`.
 
     Raises ValueError, naming the argument, its value and what is allowed.
 

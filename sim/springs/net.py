@@ -18,7 +18,15 @@ from sim.jit import MAX_THREADS
 from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
-from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays, StrandArrays, TouchArrays, WideArrays
+from sim.springs.points.arrays import (
+    CellArrays,
+    ClothArrays,
+    GridArrays,
+    RopeArrays,
+    StrandArrays,
+    TouchArrays,
+    WideArrays,
+)
 from sim.springs.points.line_arrays import record_of
 from sim.springs.points.point_system import PointSystem
 from sim.springs.run import Run
@@ -42,6 +50,7 @@ CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, 
 GRID_COST = 4.0  # of a point with links in several directions, over that of a rope's
 CONTACT_COST = 300.0  # of a point of a net that touches itself
 LEAST_BAND = 8  # least rows for a thread
+NEAR_CELLS = 32  # most pairs of edges, and of points and faces, of a cloth within reach for each particle, on average
 PAIRS = 24  # most pairs within reach for each particle or, of a chain, thickness of it, on average; more do not push
 FARTHEST = 1e9  # [m] from the origin, beyond which a net has diverged
 
@@ -311,9 +320,10 @@ class Net(PointSystem[Run]):
             return view
         pairs, seen, nearest = np.full_like(view.pairs, -1), np.zeros_like(view.seen), np.zeros_like(view.nearest)
         view = view._replace(pairs=pairs, seen=seen, nearest=nearest)
-        if not self.is_strand:
+        if isinstance(view, GridArrays):
             return view
-        return view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
+        view = view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
+        return view if self.is_strand else view._replace(**self._cell_arrays())
 
     @functools.cached_property
     def _unit_step_view(self) -> Any:
@@ -389,7 +399,18 @@ class Net(PointSystem[Run]):
             links=links,
             **components("wind_", air.wind),
         )
-        return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *touch, *wide)
+        grid = GridArrays(*view, *touch, *wide)
+        if [f[:2] for f in self.families] != CLOTH:
+            return grid
+        return ClothArrays(*grid, np.zeros_like(touch.seen), np.zeros(12), **self._cell_arrays())
+
+    def _cell_arrays(self) -> dict[str, Any]:
+        """`CellArrays` of a list that is not yet made."""
+        most = NEAR_CELLS * self.x0[0].size if self.thickness > 0.0 else 0
+        near = np.empty((most + 1, 3), np.int64)
+        near[-1] = -1, 0, 0
+        cells = CellArrays(near, np.empty(most), np.zeros(self.x0.size if most else 3), np.zeros(4), *np.zeros((3, 3)))
+        return cells._asdict()
 
 
 def components(prefix: str, vector: Sequence[float]) -> dict[str, float]:

@@ -118,13 +118,19 @@ def simulate(
     )
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
     if run.unsettled > 0:
-        steps = f"{run.unsettled} steps of {run.step:g} s"
-        if isinstance(system, Net) and system.is_strand:
-            text = f"strands that touch were slowed down in {steps}, as impulses alone did not keep them apart"
-        else:
-            text = f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver"
-        warnings.warn(text, ApproximationWarning, stacklevel=2)
+        warnings.warn(unsettled_steps(system, run), ApproximationWarning, stacklevel=2)
     return run
+
+
+def unsettled_steps(system: PointSystem, run: Any) -> str:
+    """The warning of a run with steps that are `unsettled`."""
+    steps = f"{run.unsettled} steps of {run.step:g} s"
+    if isinstance(system, Net) and system.is_strand:
+        return f"strands that touch were slowed down in {steps}, as impulses alone did not keep them apart"
+    if isinstance(system, Net) and system.thickness > 0.0 and not integrator_named(run.integrator).implicit:
+        slowed = "parts of the net that touch were slowed down, as impulses alone did not keep them apart"
+        return f"in {steps} {slowed}, or the solver of {run.integrator} had not settled"
+    return f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver"
 
 
 def run_net(

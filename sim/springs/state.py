@@ -38,7 +38,7 @@ class State:
     steps: int = 0
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     # Steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled; steps in which
-    # strands that touch were slowed down to keep them apart.
+    # strands, or parts of a cloth, that touch were slowed down to keep them apart.
     unsettled: int = 0
 
     @classmethod

@@ -13,7 +13,7 @@ from app.lab.course.task import Task
 from app.lab.report.classroom import Student
 from app.lab.report.report import state_class
 from app.lab.report.rope_picture import svg
-from app.render.markup.html import Cell, Html, fill, join, plain_table
+from app.render.markup.html import Html, TableCell, fill, join, plain_table
 
 SIGNS = {
     "right": "✓",
@@ -98,7 +98,7 @@ def rows(students: Sequence[Student]) -> Html:
     begun = sum(any(result.state != "not begun" for result in student.results) for student in ready)
     busy = f", {len(students) - len(ready)} being checked" if len(ready) < len(students) else ""
     names = folder_names(student.folder for student in students)
-    head = ("Folder", "Current task and mistake", Cell("Right", "number"), "Tasks", Cell("Rope", "wide"))
+    head = ("Folder", "Current task and mistake", TableCell("Right", "number"), "Tasks", TableCell("Rope", "wide"))
     table = plain_table((student_row(student, names[student.folder]) for student in students), head, "class")
     return fill(
         '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page updates as files are saved.</p>{}'
@@ -114,8 +114,8 @@ def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Ht
     found = mistakes((names[student.folder], student.results) for student in students)
     rows = (
         (
-            Cell(fill("<b>{}</b>", len(mistake.folders)), "number"), mistake.place, shortened(mistake.text),
-            Cell(", ".join(mistake.folders), "faint"),
+            TableCell(fill("<b>{}</b>", len(mistake.folders)), "number"), mistake.place, shortened(mistake.text),
+            TableCell(", ".join(mistake.folders), "faint"),
         )
         for mistake in found
     )  # fmt: skip
@@ -123,13 +123,13 @@ def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Ht
     return fill("<h2>Mistakes now</h2>{}", plain_table(rows, name="mistakes") if found else nothing)
 
 
-def student_row(student: Student, name: str) -> tuple[Cell, ...]:
+def student_row(student: Student, name: str) -> tuple[TableCell, ...]:
     """Cells of one student: task and mistake, or the first mistake of any; number of right tasks, all tasks, the rope.
 
     name: of the folder.
     """
     if not student.results:
-        return Cell(name, "name"), Cell(student.error or "being checked …", "faint", 4)
+        return TableCell(name, "name"), TableCell(student.error or "being checked …", "faint", 4)
     at = present_task(student.results, student.at)
     count = sum(result.state == "right" for result in student.results if not result.task.optional)
     total = sum(not result.task.optional for result in student.results)
@@ -138,11 +138,11 @@ def student_row(student: Student, name: str) -> tuple[Cell, ...]:
     said = '{} <span class="faint small">{}</span><br><span class="small">{}</span>'
     tasks = '<span class="strip">{}</span><br><span class="faint small">{}</span>'
     return (
-        Cell(fill('{}<br><span class="faint small">{}</span>', name, student.name), "name"),
-        Cell(fill(said, at.task.item if at else "–", where, shortened(text)), "text"),
-        Cell(f"{count} of {total}", "number"),
-        Cell(fill(tasks, strip(student), standing(student.results))),
-        Cell(rope(student), "wide"),
+        TableCell(fill('{}<br><span class="faint small">{}</span>', name, student.name), "name"),
+        TableCell(fill(said, at.task.item if at else "–", where, shortened(text)), "text"),
+        TableCell(f"{count} of {total}", "number"),
+        TableCell(fill(tasks, strip(student), standing(student.results))),
+        TableCell(rope(student), "wide"),
     )
 
 

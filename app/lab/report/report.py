@@ -17,7 +17,7 @@ from app.lab.course.task import Task
 from app.lab.diagnosis.equation_html import equation_lines
 from app.lab.report.chart import chart
 from app.render.markup.formula import formula
-from app.render.markup.html import Cell, Html, fill, join, plain_table, table_row
+from app.render.markup.html import Html, TableCell, fill, join, plain_table, table_row
 
 MAX_CODE = 20_000  # characters of a student's file, shown at most
 MAX_PICTURE = 4 * 2**20  # [bytes]
@@ -121,7 +121,7 @@ def overview(result: FolderResult, number: int) -> Html:
                 '<a href="#student-{}-{}">{}</a>{}', number, entry.task.name, entry.task.title,
                 " (optional)" if entry.task.optional else "",
             ),
-            Cell(entry.state, state_class(entry.state)),
+            TableCell(entry.state, state_class(entry.state)),
         )
         for entry in result.tasks
         if entry.state != "not begun"
@@ -198,11 +198,14 @@ def answers_of(answers: Answers, entry: TaskResult) -> Html:
     looked_at = "The program's answer was viewed in the panel."
     width = 3 - len(above)
     rows = [
-        table_row((Cell(PARTS[part], columns=width) for part in above), "th"),
-        table_row(Cell(join(answer_text(answer) for answer in cells[part]), columns=width) for part in above),
+        table_row((TableCell(PARTS[part], columns=width) for part in above), "th"),
+        table_row(TableCell(join(answer_text(answer) for answer in cells[part]), columns=width) for part in above),
     ]
     if explained:
-        rows += [table_row([Cell(PARTS["Explain"], columns=2)], "th"), table_row([Cell(explained, columns=2)])]
+        rows += [
+            table_row([TableCell(PARTS["Explain"], columns=2)], "th"),
+            table_row([TableCell(explained, columns=2)]),
+        ]
     return fill(
         '<table class="answers">{}</table>{}',
         join(rows),

@@ -66,7 +66,7 @@ def info(text: str, section: str) -> Html:
     )
 
 
-class Cell(NamedTuple):
+class TableCell(NamedTuple):
     """A cell of a table with a name for the style sheet, over several columns."""
 
     content: object
@@ -76,11 +76,11 @@ class Cell(NamedTuple):
 
 def table_row(cells: Iterable[object], tag: LiteralString = "td") -> Html:
     """A row of cells or their contents. The panel puts the first to the left, and the others, numbers, to the right."""
-    made = (cell if isinstance(cell, Cell) else Cell(cell) for cell in cells)
-    return fill("<tr>{}</tr>", join(table_cell(cell, tag) for cell in made))
+    made = (cell if isinstance(cell, TableCell) else TableCell(cell) for cell in cells)
+    return fill("<tr>{}</tr>", join(cell_html(cell, tag) for cell in made))
 
 
-def table_cell(cell: Cell, tag: LiteralString) -> Html:
+def cell_html(cell: TableCell, tag: LiteralString) -> Html:
     """A cell; without a name and over one column it has no attributes."""
     name = fill(' class="{}"', cell.name) if cell.name else Html()
     width = fill(' colspan="{}"', cell.columns) if cell.columns > 1 else Html()

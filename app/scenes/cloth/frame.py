@@ -33,5 +33,6 @@ class ClothReadings(NamedTuple):
     note: str  # reason why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
     left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
-    unsettled: int = 0  # steps, or kicks of explicit methods, since the start in which the solver had not settled
+    # Steps, or kicks of explicit methods, since the start: the solver had not settled, or folds were slowed down
+    unsettled: int = 0
     implicit_steps: int = 0  # of how many, with an implicit method

@@ -1,6 +1,5 @@
 """The cloth as a checked fabric or coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
-import functools
 import math
 from typing import ClassVar, TypeAlias
 
@@ -23,6 +22,7 @@ from app.scenes.cloth.start import corner, sphere_home
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.view import SecondNet, Sphere, SpringView
+from sim.springs.points.cells import faces
 
 CLOTH_COLOUR = (176, 58, 72)
 CHECK_COLOUR, CHECK_SHARES = (240, 226, 208), (0.0, 0.35, 0.75)  # where no, one or both threads have it
@@ -39,19 +39,6 @@ POLE_OVERHANG = 0.06  # of the flag's height, above the flag
 MIN_POLE_DROP = 0.1  # [m] smallest height of the flag from which the foot of the pole is computed
 
 ClothSnapshot: TypeAlias = Snapshot[ClothParams, ClothFrame, ClothReadings]
-
-
-@functools.lru_cache(maxsize=4)
-def faces(rows: int, cols: int) -> np.ndarray:
-    """(2 (rows - 1) (cols - 1), 3): two triangles a cell, split along alternating diagonals, so that no direction of
-    folds is preferred."""
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(rows - 1), np.arange(cols - 1), indexing="ij"))
-    a = i * cols + j
-    b, c, d = a + 1, a + cols, a + cols + 1
-    odd = ((i + j) % 2).astype(bool)[:, None]
-    first = np.where(odd, np.stack([a, b, d], 1), np.stack([a, b, c], 1))
-    second = np.where(odd, np.stack([a, d, c], 1), np.stack([b, d, c], 1))
-    return np.concatenate([first, second]).astype(np.uint32)
 
 
 def checks(rows: int, cols: int) -> np.ndarray:
@@ -85,11 +72,14 @@ def reach_of(params: ClothParams) -> np.ndarray:
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
-def unsettled_words(readings: ClothReadings) -> str:
-    """The number of steps in which the solver had not settled, and advice."""
-    if not readings.implicit_steps:
-        return counted(readings.unsettled, "kick")
-    return f"{number(readings.unsettled)} of {counted(readings.implicit_steps, 'step')}: use a smaller time step"
+def unsettled_words(readings: ClothReadings, *, touches_itself: bool) -> str:
+    """The number of steps in which the solver had not settled, or folds were slowed down, and advice."""
+    what = "the solver had not settled"
+    if readings.implicit_steps:
+        steps = counted(readings.implicit_steps, "step")
+        return f"{what} in {number(readings.unsettled)} of {steps}: use a smaller time step"
+    folds = ", or folds that touch were slowed down," if touches_itself else ""
+    return f"{what}{folds} in {counted(readings.unsettled, 'kick')}"
 
 
 class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
@@ -189,7 +179,7 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         if readings.corrections:
             parts.append(fill("<div>{:.1f} corrections a step</div>", readings.corrections))
         if readings.unsettled:
-            parts.append(fill("<div>the solver had not settled in {}</div>", unsettled_words(readings)))
+            parts.append(fill("<div>{}</div>", unsettled_words(readings, touches_itself=p.thickness > 0.0)))
         if readings.left_out:
             parts.append(
                 fill("<div>too crowded: self-collision left out {}</div>", counted(readings.left_out, "particle"))

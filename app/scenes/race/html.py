@@ -4,8 +4,8 @@ from app.formats.formatting import metres, metres_above, number, percent, second
 from app.render.markup.html import (
     ERROR_COLOUR,
     WRONG_COLOUR,
-    Cell,
     Html,
+    TableCell,
     bold,
     coloured,
     escape,
@@ -60,10 +60,10 @@ def result_rows(result: Result, stiffness_differs: bool) -> Html:
         rope_name(result, stiffness_differs),
         corrections,
     )
-    name = table_row([Cell(title, columns=len(HEAD))])
+    name = table_row([TableCell(title, columns=len(HEAD))])
     if result.failure:
         failure = fill('<span style="color:{}">{}</span>', ERROR_COLOUR, result.failure)
-        return join((name, table_row([Cell(failure, columns=len(HEAD))])))
+        return join((name, table_row([TableCell(failure, columns=len(HEAD))])))
     cells = (
         error_text(result),
         energy_text(result),

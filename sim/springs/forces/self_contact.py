@@ -1,8 +1,9 @@
 """A net against itself: particles nearer than the thickness push each other apart, neighbours on the grid excepted.
 
 Pairs and neighbours are those of `sim.springs.points.near_pairs`, so that a flat net that is thick beside its spacing
-does not push itself apart. With a thickness of at least 0.71 of the spacing nothing fits through a cell. Of a chain the
-links touch (`sim.springs.forces.strand_contact`).
+does not push itself apart. Below a thickness of 0.71 of the spacing a particle in the middle of a cell feels no force;
+that it does not pass, `sim.springs.kicks.apart` achieves. Of a chain the links touch
+(`sim.springs.forces.strand_contact`).
 """
 
 import math

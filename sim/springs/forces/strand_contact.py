@@ -20,6 +20,7 @@ from sim.springs.points.arrays import StrandArrays, span
 from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
 from sim.springs.points.near_pairs import are_neighbours, pairs_at_hand, refresh_pairs
 from sim.springs.points.order import in_turn
+from sim.springs.points.places import dot
 
 
 @kernel(inline=True)
@@ -151,11 +152,6 @@ def pins_power(x, v, t, p):
     if p.pins.shape[0] == 0:
         return 0.0
     return power(x, v, t, p, True)[1] - power(x, v, t, p, False)[1]
-
-
-@kernel(inline=True)
-def dot(ax, ay, az, bx, by, bz):
-    return ax * bx + ay * by + az * bz
 
 
 @kernel(inline=True)

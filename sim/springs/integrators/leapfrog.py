@@ -61,7 +61,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
             add_power(x, v, now, p, False, 0.5 * h, ledger)
         if s == 0 or not merged:
             kick(x, v, a, now, 0.5 * h, decay, room, p, odd, False, with_account, ledger)
-        remember_places(x, p)
+        remember_places(x, p, True)
         drift(x, v, h, p, f, spare, middle, with_account, ledger)
         set_pins(x, v, now + h, p)
         keep_apart(x, v, now + h, p, with_account, ledger)

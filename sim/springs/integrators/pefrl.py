@@ -63,7 +63,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     for s in range(steps):
         now = t + s * h
         set_pins(x, v, now, p)
-        remember_places(x, p)
+        remember_places(x, p, True)
         for i in range(4):
             add_scaled(x, DRIFTS[i] * h, v)
             now += DRIFTS[i] * h

@@ -59,7 +59,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         accelerate(xs, vs, now + h, p, True, f, a4)
         if with_account:
             add_power(xs, vs, now + h, p, True, h / 6.0, ledger)
-        remember_places(x, p)
+        remember_places(x, p, True)
         finish(x, v, a1, a2, a3, a4, h)
         keep_apart(x, v, now + h, p, with_account, ledger)
     set_pins(x, v, t + steps * h, p)

@@ -49,7 +49,7 @@ def take_euler_steps(by_new_velocity, x, v, ledger, t, h, steps, p, with_account
         accelerate(x, v, now, p, True, f, a)
         if with_account:
             add_power(x, v, now, p, True, h, ledger)
-        remember_places(x, p)
+        remember_places(x, p, True)
         if by_new_velocity:
             kick_and_drift(x, v, h, a)
         else:

@@ -1,156 +1,222 @@
-"""`keep_apart`: in no step does a strand of a chain that touches itself pass another.
+"""`keep_apart`: in no step does a strand of a chain that touches itself pass another, nor a cloth pass itself.
 
-A force that pushes strands apart holds neither a pull that is strong enough nor a step that is longer than the rope is
-thick. So the straight motion of each step is followed: two links come no nearer to each other than LEAST of the
-thickness, or MOST_CLOSING of their distance at its start. Conservative advancement finds the first time at which they
-do, by steps as long as the least time in which they could (Mirtich 1996, Impulse-based dynamic simulation of rigid body
-systems). There the pair gets the impulses, of positions and of velocities, that end its approach: equal and opposite,
-at its places of contact. Pairs follow each other until none comes too near (Harmon, Vouga, Tamstorf & Grinspun 2008,
-Robust treatment of simultaneous collisions). If that takes more than SWEEPS, no point moves further than a bound that
-its distances allow.
+A force that pushes things apart holds neither a pull that is strong enough nor a step that is longer than they are
+thick. So the straight motion of each step is followed: two links of a chain, two edges of a cloth, or a point and a
+face of it, come no nearer to each other than LEAST of the thickness, of a cloth at most of its spacing, or MOST_CLOSING
+of their distance at its start. Conservative advancement finds the first time at which they do, by steps as long as the
+least time in which they could (Mirtich 1996, Impulse-based dynamic simulation of rigid body systems). There the pair
+gets the impulses, of positions and of velocities, that end its approach: equal and opposite, at its places of contact.
+Pairs follow each other until none comes too near (Harmon, Vouga, Tamstorf & Grinspun 2008, Robust treatment of
+simultaneous collisions). If that takes more than SWEEPS, no point moves further than a bound that its distances allow.
 
 The energy that all this takes counts as dissipated. The motion of pins is not changed: one that moves further in a step
-than a strand is away from it may pass the strand.
+than a strand or a face is away from it may pass that.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
 from sim.jit import kernel
 from sim.springs.analysis.energy import kinetic_energy, stored_energies
-from sim.springs.forces.strand_contact import add_kick, pair_mobility
 from sim.springs.points.arrays import by_net
-from sim.springs.points.link_pairs import LinkPair, pair_at, rate_of
+from sim.springs.points.near_cells import (
+    find_near,
+    four_in_list,
+    motion_since,
+    note_left_out,
+    set_closing,
+    spacing_of,
+    start_motion,
+    stays_beyond,
+)
 from sim.springs.points.near_pairs import farthest, find_pairs_within, mean_shift, reach_of, refresh_pairs
+from sim.springs.points.places import (
+    Four,
+    NearestPlaces,
+    closing_bound,
+    kick_between,
+    mobility_between,
+    places_at,
+    point_of,
+    rate_between,
+)
 
 LEAST = 0.25  # of the thickness
 MOST_CLOSING = 0.9  # of the distance at the start of a step, of pairs that are nearer than LEAST
 SWEEPS = 30  # over the pairs
 TRIES = 60  # steps of conservative advancement
-NEARLY = 1.01  # of the least distance, at which two links have met
+NEARLY = 1.01  # of the least distance, at which a pair has met
+HOLDS = 10  # times that points are held back after the sweeps, as those that are not may come near to those that are
 BOUND = 0.45  # part of a pair's way to its least distance that each of its points may move, if the sweeps do not end
 NEVER = 2.0  # steps: after the end of the present one
 
 
-@kernel(noalias=True, allocates=False)
-def remember_chain(x, p):
+@kernel(noalias=True, inline=True)
+def remember(x, p):
     for j in range(x.shape[0]):
         p.last[j] = x[j]
 
 
-@kernel(inline=True)
-def shift_of(x, p, j):
-    """Displacement of point j since the start of the step."""
-    n = p.cols
-    return x[j] - p.last[j], x[n + j] - p.last[n + j], x[2 * n + j] - p.last[2 * n + j]
-
-
-@kernel(inline=True)
-def end_of(pair, e):
-    """Point e, from 0 to 3, of a pair."""
-    return pair.a + e if e < 2 else pair.b + e - 2
-
-
-@kernel(inline=True)
-def least_of(p, pair):
-    """Least distance [m] that a pair may have at the end of a step."""
-    return min(LEAST * p.thickness, MOST_CLOSING * pair.distance)
+@kernel(noalias=True, allocates=False)
+def remember_chain(x, p, follows):
+    remember(x, p)
 
 
 @kernel(allocates=False)
-def closing_bound(x, p, pair):
-    """Largest change of the distance of two links [m] in the step: twice the motion of any end about their mean."""
-    mx = my = mz = most = 0.0
-    for e in range(4):
-        dx, dy, dz = shift_of(x, p, end_of(pair, e))
-        mx, my, mz = mx + 0.25 * dx, my + 0.25 * dy, mz + 0.25 * dz
-    for e in range(4):
-        dx, dy, dz = shift_of(x, p, end_of(pair, e))
-        most = max(most, (dx - mx) ** 2 + (dy - my) ** 2 + (dz - mz) ** 2)
-    return 2.0 * math.sqrt(most)
+def remember_cloth(x, p, follows):
+    if p.thickness > 0.0:
+        start_motion(x, p, follows)
+        remember(x, p)
+
+
+def by_touch(chain: Any, cloth: Any) -> Any:
+    """A kernel for chains, and for cloths."""
+    return by_net(rope=chain, grid=cloth, strand=chain)
+
+
+@kernel(inline=True)
+def links_of_pair(p, q):
+    a, b = p.pairs[q, 0], p.pairs[q, 1]
+    return Four(False, a, a + 1, b, b + 1)
+
+
+# The `Four` of row q of the list of pairs, and the distance [m] that a pair which is not nearer has to keep.
+four_at = by_touch(chain=links_of_pair, cloth=four_in_list)
+least_distance = by_touch(
+    chain=kernel(lambda p: LEAST * p.thickness, inline=True),
+    cloth=kernel(lambda p: LEAST * min(p.thickness, spacing_of(p)), inline=True),
+)
 
 
 @kernel(allocates=False)
-def pair_during(x, p, pair, time):
-    """The `LinkPair` at a part of the step."""
-    n = p.cols
+def places_during(x, p, four, time):
+    """The `NearestPlaces` at a part of the step."""
+    n = p.rows * p.cols
     for e in range(4):
-        j = end_of(pair, e)
+        j = point_of(four, e)
         for i in range(3):
             before = p.last[i * n + j]
             p.between[4 * i + e] = before + time * (x[i * n + j] - before)
-    now = pair_at(p.between, 4, 0, 2)
-    return LinkPair(pair.a, pair.b, now.s, now.t, now.distance, now.nx, now.ny, now.nz)
+    f, now = four, places_at(p.between, 4, Four(four.is_face, 0, 1, 2, 3))
+    return NearestPlaces(f.a, f.b, f.c, f.d, now.wa, now.wb, now.wc, now.wd, now.distance, now.nx, now.ny, now.nz)
 
 
 @kernel(allocates=False)
-def meeting(x, p, a, b):
-    """(part of the step, pair, least distance [m]) of the first time at which two links are too near and still approach
-    each other; NEVER if they never are."""
-    pair = pair_at(p.last, p.cols, a, b)
-    least, most, time = least_of(p, pair), closing_bound(x, p, pair), 0.0
-    if pair.distance - least >= most or pair.distance == 0.0:
-        return NEVER, pair, least
+def meeting(x, p, four):
+    """(part of the step, places, least distance [m]) of the first time at which two things are too near and still
+    approach each other; NEVER if they never are."""
+    n = p.rows * p.cols
+    places = places_at(p.last, n, four)
+    least, most = min(least_distance(p), MOST_CLOSING * places.distance), closing_bound(x, p.last, n, four)
+    time = 0.0
+    if places.distance - least >= most or places.distance == 0.0:
+        return NEVER, places, least
     for _ in range(TRIES):
-        time += (pair.distance - least) / most
+        time += (places.distance - least) / most
         if time >= 1.0:
-            return NEVER, pair, least
-        pair = pair_during(x, p, pair, time)
-        if pair.distance <= NEARLY * least:
-            if pair.distance == 0.0 or rate_of(x, p.cols, pair) < least:
+            return NEVER, places, least
+        places = places_during(x, p, four, time)
+        if places.distance <= NEARLY * least:
+            if places.distance == 0.0 or rate_between(x, n, places) < least:
                 break
-            least *= 0.5  # these places part again; others of the two links may not
-    return time, pair, least
+            least *= 0.5  # these places part again; others of the two may not
+    return time, places, least
 
 
 @kernel(allocates=False)
-def part_pair(x, v, p, pair, least):
+def part_pair(x, v, p, places, least):
     """End the approach of a pair at its places of contact."""
-    w = pair_mobility(p, pair)
+    n, w = p.rows * p.cols, mobility_between(p, places)
     if w > 0.0:
-        missing = NEARLY * NEARLY * least - rate_of(x, p.cols, pair)
-        add_kick(x, p, pair, max(missing, 0.0) / w)
-        add_kick(v, p, pair, max(-rate_of(v, p.cols, pair), 0.0) / w)
+        missing = NEARLY * NEARLY * least - rate_between(x, n, places)
+        kick_between(x, p, places, max(missing, 0.0) / w)
+        kick_between(v, p, places, max(-rate_between(v, n, places), 0.0) / w)
 
 
 @kernel
-def pairs_of_step(x, p):
-    """Number of pairs in the list of those that may meet in the step."""
-    reach = 2.0 * math.sqrt(farthest(x, p.last, np.uint64(p.cols))) + LEAST * p.thickness
+def pairs_of_chain(x, p):
+    reach = 2.0 * math.sqrt(farthest(x, p.last, np.uint64(p.cols))) + least_distance(p)
     if reach <= p.thickness:
-        return refresh_pairs(p.last, p)
+        return refresh_pairs(p.last, p), True
     if not reach < math.inf:
-        return 0
+        return 0, True
     find_pairs_within(p.last, p, max(reach, reach_of(p)))
-    return p.pairs[p.pairs.shape[0] - 1, 0]
+    return p.pairs[p.pairs.shape[0] - 1, 0], True
+
+
+@kernel
+def pairs_of_cloth(x, p):
+    last, least = p.near.shape[0] - 1, least_distance(p)
+    set_closing(x, p)
+    if p.near[last, 0] < 0 or not stays_beyond(p, p.reach, least):
+        far, _ = motion_since(x, p.last, p.rows, p.cols)
+        if not far < math.inf:
+            return 0, True
+        if not find_near(p.last, x, p, least):
+            if find_near(p.last, p.last, p, least):
+                return 0, False
+            note_left_out(p)
+        set_closing(x, p)
+    return p.near[last, 0], True
+
+
+@kernel(inline=True)
+def is_near_enough(p, q):
+    """False of a pair that cannot come too near, by its distance when the list was made and the motion since."""
+    return p.near_gaps[q] - p.closing[p.near[q, 2]] < least_distance(p)
+
+
+# (number of pairs in the list of those that may meet in the step, False if the step is too long for the list's room),
+# and False of a pair that cannot.
+pairs_of_step = by_touch(chain=pairs_of_chain, cloth=pairs_of_cloth)
+is_worth_a_look = by_touch(chain=kernel(lambda p, q: True, inline=True), cloth=is_near_enough)
+
+
+@kernel
+def shared_shift(x, p):
+    """Mean displacement in the step, (x, y, z) [m]; 0 if there are pins."""
+    n = np.uint64(p.rows * p.cols)
+    if p.inverse_masses.min() == 0.0:
+        return 0.0, 0.0, 0.0
+    return mean_shift(x, p.last, np.uint64(0), n), mean_shift(x, p.last, n, n), mean_shift(x, p.last, n + n, n)
+
+
+@kernel
+def shorten(x, v, p, part):
+    """Shorten the motion of each free point about the mean to a part of it, `part` (points,)."""
+    n = p.rows * p.cols
+    mx, my, mz = shared_shift(x, p)
+    for e in range(3):
+        shift = mx if e == 0 else my if e == 1 else mz
+        for j in range(n):
+            i = e * n + j
+            if part[j] < 1.0 and p.inverse_masses[j] > 0.0:
+                x[i] = p.last[i] + shift + part[j] * (x[i] - p.last[i] - shift)
+                v[i] *= part[j]
 
 
 @kernel
 def hold_back(x, v, p):
-    """Shorten the motion of each point, without pins about the mean, to a bound by the distances of its links."""
-    n = np.uint64(p.cols)
-    part = np.ones(p.cols)
-    mx = my = mz = 0.0
-    if p.inverse_masses.min() > 0.0:
-        mx, my = mean_shift(x, p.last, np.uint64(0), n), mean_shift(x, p.last, n, n)
-        mz = mean_shift(x, p.last, n + n, n)
-    for q in range(pairs_of_step(x, p)):
-        pair = pair_at(p.last, p.cols, p.pairs[q, 0], p.pairs[q, 1])
+    """Shorten the motion of each point to a bound by the distances of its pairs."""
+    n = p.rows * p.cols
+    part = np.ones(n)
+    mx, my, mz = shared_shift(x, p)
+    count, _ = pairs_of_step(x, p)
+    for q in range(count):
+        if not is_worth_a_look(p, q):
+            continue
+        four = four_at(p, q)
+        distance = places_at(p.last, n, four).distance
+        most = BOUND * (distance - min(least_distance(p), MOST_CLOSING * distance))
         for e in range(4):
-            j = end_of(pair, e)
-            dx, dy, dz = shift_of(x, p, j)
-            way = math.sqrt((dx - mx) ** 2 + (dy - my) ** 2 + (dz - mz) ** 2)
-            most = BOUND * (pair.distance - least_of(p, pair))
-            if way > most and p.inverse_masses[j] > 0.0:
+            j = point_of(four, e)
+            dx, dy, dz = x[j] - p.last[j] - mx, x[n + j] - p.last[n + j] - my, x[2 * n + j] - p.last[2 * n + j] - mz
+            way = math.sqrt(dx * dx + dy * dy + dz * dz)
+            if way > most:
                 part[j] = min(part[j], most / way)
-    for e in range(3):
-        shift = mx if e == 0 else my if e == 1 else mz
-        for j in range(p.cols):
-            i = e * p.cols + j
-            if part[j] < 1.0:
-                x[i] = p.last[i] + shift + part[j] * (x[i] - p.last[i] - shift)
-                v[i] *= part[j]
+    shorten(x, v, p, part)
 
 
 @kernel(noalias=True, inline=True)
@@ -165,52 +231,80 @@ def farthest_in_step(x, last, seen, n):
 
 
 @kernel(allocates=False)
-def may_meet(x, p):
-    """False if no pair can come too near, by its distance when the list was made and the motion since."""
-    n = np.uint64(p.cols)
-    if 2.0 * math.sqrt(farthest_in_step(x, p.last, p.seen, n)) < p.nearest[0] - LEAST * p.thickness:
+def may_links_meet(x, p):
+    n, least = np.uint64(p.cols), least_distance(p)
+    if 2.0 * math.sqrt(farthest_in_step(x, p.last, p.seen, n)) < p.nearest[0] - least:
         return False
     # Of a rope that flies the motion about the mean decides.
     since, now = math.sqrt(farthest(p.last, p.seen, n)), math.sqrt(farthest(x, p.last, n))
-    return not 2.0 * (since + now) < p.nearest[0] - LEAST * p.thickness
+    return not 2.0 * (since + now) < p.nearest[0] - least
+
+
+@kernel(allocates=False)
+def may_cloth_meet(x, p):
+    if p.thickness == 0.0:
+        return False
+    if p.near[p.near.shape[0] - 1, 0] < 0:
+        return True
+    set_closing(x, p)
+    return not stays_beyond(p, p.clear, least_distance(p))
+
+
+# False if no pair can come too near, by its distance when the list was made and the motion since.
+may_meet = by_touch(chain=may_links_meet, cloth=may_cloth_meet)
+
+
+@kernel(allocates=False)
+def energy_of(x, v, t, p):
+    elastic, gravity, contact = stored_energies(x, t, p)
+    return kinetic_energy(v, p) + elastic + gravity + contact
 
 
 @kernel
 def part_pairs(x, v, t, p, with_account, ledger):
     """`keep_apart` of a step in which pairs may meet."""
-    kept, before = False, 0.0
-    for sweep in range(SWEEPS + 1):
-        met = False
-        for q in range(pairs_of_step(x, p)):
-            time, pair, least = meeting(x, p, p.pairs[q, 0], p.pairs[q, 1])
+    kept, slowed, before = False, False, 0.0
+    for sweep in range(SWEEPS + HOLDS + 1):
+        count, has_room = pairs_of_step(x, p)
+        met = not has_room
+        for q in range(count):
+            if not is_worth_a_look(p, q):
+                continue
+            time, places, least = meeting(x, p, four_at(p, q))
             if time == NEVER:
                 continue
             if not kept and with_account:
-                elastic, gravity, contact = stored_energies(x, t, p)
-                before = kinetic_energy(v, p) + elastic + gravity + contact
+                before = energy_of(x, v, t, p)
             met = kept = True
-            if sweep == SWEEPS:
+            if sweep >= SWEEPS:
                 break
-            part_pair(x, v, p, pair, least)
-        if not met:
+            part_pair(x, v, p, places, least)
+        if not met or sweep == SWEEPS + HOLDS:
             break
-        if sweep == SWEEPS:
-            hold_back(x, v, p)
-            ledger[2] += 1.0
+        if not has_room or sweep >= SWEEPS:
+            if not kept and with_account:
+                before = energy_of(x, v, t, p)
+            kept = slowed = True
+            if has_room:
+                hold_back(x, v, p)
+            else:
+                shorten(x, v, p, np.full(p.rows * p.cols, 0.5))
+    if slowed:
+        ledger[2] += 1.0
     if kept and with_account:
-        elastic, gravity, contact = stored_energies(x, t, p)
-        ledger[0] += before - kinetic_energy(v, p) - elastic - gravity - contact
+        ledger[0] += before - energy_of(x, v, t, p)
     return kept
 
 
 @kernel(allocates=False)
-def keep_chain_apart(x, v, t, p, with_account, ledger):
+def keep_net_apart(x, v, t, p, with_account, ledger):
     return may_meet(x, p) and part_pairs(x, v, t, p, with_account, ledger)
 
 
-nothing = kernel(lambda x, p: None, inline=True)
+nothing = kernel(lambda x, p, follows: None, inline=True)
 never = kernel(lambda x, v, t, p, with_account, ledger: False, inline=True)
-# Remember the positions at the start of a step, for `keep_apart`.
-remember_places = by_net(rope=nothing, grid=nothing, lines=nothing, strand=remember_chain)
-# End a step to x [m], v [m/s] at time t [s] before a strand passes another. Returns True if x or v were changed.
-keep_apart = by_net(rope=never, grid=never, lines=never, strand=keep_chain_apart)
+# Remember the positions at the start of a step, for `keep_apart`. follows: these are those at the end of the last step.
+remember_places = by_net(rope=nothing, grid=nothing, cloth=remember_cloth, lines=nothing, strand=remember_chain)
+# End a step to x [m], v [m/s] at time t [s] before a strand of a chain passes another, or a part of a cloth passes
+# another. Returns True if x or v were changed.
+keep_apart = by_net(rope=never, grid=never, cloth=keep_net_apart, lines=never, strand=keep_net_apart)

@@ -69,17 +69,30 @@ class TouchArrays(NamedTuple):
     row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
     col_spacing: float
     # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for; in [-1, 1] the most particles
-    # or links that were left out as the list was full
+    # or links, or cells of a cloth, that were left out as a list was full
     pairs: NDArray[np.int64]
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     nearest: NDArray[np.float64]  # (1,) the least distance [m] of any pair then, 0 if it is not known
 
 
 class StepArrays(NamedTuple):
-    """Extra kernel data of chains that touch themselves, see `sim.springs.kicks.apart`."""
+    """Extra kernel data of chains and cloths that touch themselves, see `sim.springs.kicks.apart`."""
 
-    last: NDArray[np.float64]  # (3 cols,) positions at the start of a step
-    between: NDArray[np.float64]  # (12,) those of two links within a step: x, y, z of their four ends
+    last: NDArray[np.float64]  # (3 rows cols,) positions at the start of a step
+    between: NDArray[np.float64]  # (12,) those of a pair within a step: x, y, z of its four points
+
+
+class CellArrays(NamedTuple):
+    """Extra kernel data of cloths that touch themselves, see `sim.springs.points.near_cells`."""
+
+    # (most + 1, 3): pairs that may meet, and the kind of each; their number in [-1, 0], -1: there is no list yet
+    near: NDArray[np.int64]
+    near_gaps: NDArray[np.float64]  # (most,) lower bound of the distance [m] of each when the list was made
+    listed: NDArray[np.float64]  # (3 rows cols,) positions at the end of the step in which the list was made
+    moved: NDArray[np.float64]  # (4,) `motion_since` at the start of the step and at its end
+    reach: NDArray[np.float64]  # (3,) distance [m] within which pairs of each kind are listed
+    clear: NDArray[np.float64]  # (3,) lower bound of the distance [m] of all then
+    closing: NDArray[np.float64]  # (3,) [m], see `set_closing`
 
 
 class WideArrays(NamedTuple):
@@ -101,7 +114,7 @@ class WideArrays(NamedTuple):
 # of the four classes of arrays, with no more than nets of that class can need: numba tells them apart by their types.
 StrandArrays = namedtuple("StrandArrays", RopeArrays._fields + TouchArrays._fields + StepArrays._fields)
 GridArrays = namedtuple("GridArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
-ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
+ClothArrays = namedtuple("ClothArrays", GridArrays._fields + StepArrays._fields + CellArrays._fields)
 
 
 def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None, strand: Any = None) -> Any:

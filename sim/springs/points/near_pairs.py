@@ -105,6 +105,20 @@ def bucket(cx, cy, cz, mask):
 
 
 @kernel
+def sort_into_buckets(where, order, mask):
+    """Set `order` to the numbers of all items by their buckets `where`; returns where each bucket starts, from 1 on."""
+    starts = np.zeros(mask + 2, np.int64)
+    for j in range(where.shape[0]):
+        starts[where[j] + 1] += 1
+    for q in range(mask + 1):
+        starts[q + 1] += starts[q]
+    for j in range(where.shape[0] - 1, -1, -1):
+        starts[where[j] + 1] -= 1
+        order[starts[where[j] + 1]] = j
+    return starts
+
+
+@kernel
 def find_pairs_within(x, p, reach):
     """Fill p.pairs with the pairs nearer than `reach` [m], p.seen with the positions, and p.nearest with the least
     distance of all pairs, at most the reach.
@@ -119,18 +133,11 @@ def find_pairs_within(x, p, reach):
     while mask < n:
         mask *= 2
     mask -= 1
-    starts = np.zeros(mask + 2, np.int64)
-    where = np.empty(n, np.int64)
-    order = np.empty(n, np.int64)
+    where, order = np.empty(n, np.int64), np.empty(n, np.int64)
     for j in range(n):
         cx, cy, cz = cell_of(x, p, j, inverse)
         where[j] = bucket(cx, cy, cz, mask)
-        starts[where[j] + 1] += 1
-    for q in range(mask + 1):
-        starts[q + 1] += starts[q]
-    for j in range(n - 1, -1, -1):
-        starts[where[j] + 1] -= 1
-        order[starts[where[j] + 1]] = j
+    starts = sort_into_buckets(where, order, mask)
     most = p.pairs.shape[0] - 1
     count, nearest = 0, reach
     p.nearest[0] = 0.0

@@ -280,7 +280,7 @@ take_step = by_net(rope=step_rope, grid=step_any, lines=step_any)
 @kernel(inline=True)
 def end_step(method, x, t, p, stages, xn, vn, with_account, ledger):
     """End a step from x to xn, vn at time t [s] before a strand passes another; returns the force evaluations."""
-    remember_places(x, p)
+    remember_places(x, p, False)
     if not keep_apart(xn, vn, t, p, with_account, ledger):
         return 0
     accelerate_all(xn, vn, t, p, stages.f, stages.a)

@@ -86,7 +86,7 @@ STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 10
 
 
 def unsettled_words(readings: ClothReadings) -> str:
-    """Where the solver had not settled: of how many steps, and what helps."""
+    """The number of steps in which the solver had not settled, of how many, and advice."""
     if not readings.implicit_steps:
         return counted(readings.unsettled, "kick")
     return f"{number(readings.unsettled)} of {counted(readings.implicit_steps, 'step')}: use a smaller time step"

@@ -1,7 +1,7 @@
 // The keys of the lab on keyboards of all layouts: letters and digits. Where a key has none, because the layout is of another
 // script or gives digits with Shift only, its place on the keyboard counts.
 
-// What a press stands for as one of these keys: its letter or digit, and whether Shift counts.
+// The letter or digit of a press, and whether Shift counts.
 /** @param {{ key: string, code: string, shiftKey: boolean, altKey: boolean }} event */
 export function latinKey({ key, code, shiftKey, altKey }) {
   const [, kind, name] = /^(Key|Digit)(.)$/.exec(code) ?? [];

@@ -133,6 +133,7 @@ def test_two_panes_stand_at_their_start_in_their_first_whole_pictures(
     try:
         lab.comparing.begin([read_query(query) for query in queries], True)
         assert lab.comparison is not None
+        viewers = lab.comparison.viewers
         page = new_page(chromium, 700, 300, drawn=drawn)
         page.add_init_script(WATCH_CLOCK)
         page.goto(f"http://127.0.0.1:{lab.port}/beside?hideViserLogo")
@@ -143,7 +144,7 @@ def test_two_panes_stand_at_their_start_in_their_first_whole_pictures(
 
         assert wait(page, lambda: len(clocks()) == 2, 300.0)
         found = [re.search(r"t = ([0-9.]+) s", clock) for clock in clocks()]
-        assert wait(page, lambda: all(viewer.scene.time > 0.0 for viewer in lab.comparison.viewers))
+        assert wait(page, lambda: all(viewer.scene.time > 0.0 for viewer in viewers))
         page.close()
     finally:
         lab.shut()

@@ -42,7 +42,8 @@ from app.scenes.setups import (
 CONFIRMED_TIME = 2.0  # [s] for which a button confirms its action
 # js/panel/buttons.js sends their presses.
 SET_UP_BUTTONS = (
-    '<div class="springtide-switches"><button type="button" data-springtide-act="link">Copy link</button>'
+    '<div class="springtide-switches springtide-above">'
+    '<button type="button" data-springtide-act="link">Copy link</button>'
     '<button type="button" data-springtide-act="save">Save set-up</button></div>'
 )
 LOAD_BUTTON = (

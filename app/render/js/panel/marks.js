@@ -38,7 +38,7 @@ const MARKS = {
   sliders: `div:has(> div ${ROW} > div > div > .multi-slider)`, // holds such rows
   field: `div:has(${ROW} .mantine-TextInput-root):has(+ div .multi-slider)`,
   slider: `div:has(${ROW} .mantine-TextInput-root) + div:has(${ROW} .multi-slider)`,
-  plots: ".springtide-switches:has([data-springtide-choice=plots], .springtide-load)",
+  wide: ".springtide-switches:has([data-springtide-choice=plots], [data-springtide-act=link], .springtide-load)", // its buttons
   // The lab of a course
   lab: ".mantine-ScrollArea-content div:has(.mantine-Paper-root .springtide-panel[data-state])", // holds the first block
   task: "div:has(> div > .springtide-note > .springtide-guide)",

@@ -75,12 +75,12 @@ def with_mooring(params: Any, path: Path, setup: Any) -> Any:
     from app.scenes.mooring.files.from_file import opened
 
     params = with_changes(dataclasses.replace(params, moordyn_file=str(path)), setup)
-    system, given = opened(params).system, setup.values
+    system, values = opened(params).system, setup.values
     if system.node_count > MAX_MOORING_NODES:
         raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
-    if "breaking_load" not in given:
+    if "breaking_load" not in values:
         params = dataclasses.replace(params, breaking_load=0.0)
-    if "time_step" in given:
+    if "time_step" in values:
         return params
     step = float(f"{STEP_SAFETY * critical_step(system, params.integrator):.1e}")
     return dataclasses.replace(params, time_step=clamp_value(parameters_of(params)["time_step"], step))

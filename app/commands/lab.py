@@ -19,8 +19,8 @@ def add_arguments(lab: argparse.ArgumentParser) -> None:
         "`springtide lab class/*` shows the teacher the current task of each student."
     )
     live = commands.add_parser(LIVE, prog=lab.prog)
-    made = "a folder made by `springtide lab new`; several folders are a class"
-    live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
+    folder_help = "a folder made by `springtide lab new`; several folders are a class"
+    live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=folder_help)
     open_lab.add_arguments(live)
     live.set_defaults(run=run_live)
     # The options of `springtide lab DIR` stand in the help of `springtide lab`, where users look.

@@ -52,11 +52,11 @@ def check(
     for option, path in out.items():
         if path is not None and str(path) != "-":
             check_out_file(f"--{option}", path, endings=ENDINGS[option])
-    found = load_tasks(*tasks)
+    all_tasks = load_tasks(*tasks)
     curves, runners = out["report"] is not None, Runners()
     with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
         try:
-            results = list(pool.map(lambda one: check_folder(one, found, curves=curves, runners=runners), folders))
+            results = list(pool.map(lambda one: check_folder(one, all_tasks, curves=curves, runners=runners), folders))
         except BaseException:  # Ctrl-C does not wait for endless functions
             runners.abort()
             raise
@@ -136,8 +136,8 @@ def class_row(result: FolderResult, name: str) -> dict[str, str]:
 
 def print_frequent(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> None:
     """Print the mistakes that most students of a class have. students: name of the folder and results of each."""
-    found = [mistake for mistake in mistakes(students) if len(mistake.folders) > 1][:FREQUENT]
-    for mistake in found:
+    frequent_mistakes = [mistake for mistake in mistakes(students) if len(mistake.folders) > 1][:FREQUENT]
+    for mistake in frequent_mistakes:
         get_console().print()
         names = ", ".join(mistake.folders)
         text_tables.say(plain(f"{len(mistake.folders)} students, {mistake.place}: {mistake.text} ({names})"))

@@ -143,9 +143,9 @@ def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -
     from app.scenes.setups import missing_files
 
     for option, name in setup.files.items() if setup.changes else ():
-        given = getattr(arguments, option, None)
-        if given is not None and given.name != name:
-            say_on_error_stream(f"{given.name}: without the changes of the set-up, which are those of {name}")
+        path = getattr(arguments, option, None)
+        if path is not None and path.name != name:
+            say_on_error_stream(f"{path.name}: without the changes of the set-up, which are those of {name}")
     others = {option: file for option, file in setup.files.items() if getattr(arguments, option, None) is None}
     text = missing_files(setup._replace(files=others))
     if text:

@@ -100,9 +100,9 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
             count = frame + 1
             progress.update(task, completed=frame)
     about = {**described(scene, params), "units": units, "diverged": problem, "notes": list(scene.notes(params))}
-    kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
-    write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
-    say(f"{count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}", out)
+    columns = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
+    write_arrays(out, {**columns, "about": np.array(json.dumps(about))})
+    say(f"{count} frames to t = {times[count - 1]:g} s, {', '.join(columns)}", out)
     if problem:
         say(f"The run ended early. {problem}")
         return 1

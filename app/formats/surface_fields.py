@@ -25,11 +25,11 @@ def set_surface_fields(
     rest (2, n) [m]: where points are level when the water rests; its height is 0. n is rows cols, or (rows + 1) (cols
     + 1): then the first row and column come again behind the last, and close a tile that repeats.
     """
-    found = set_fields(
+    numbers = set_fields(
         *(np.ascontiguousarray(array, np.float32) for array in (vertices, slopes, foam)), rest, fields
     )  # fmt: skip
     count = foam.size
-    x, y, z, square, steep, highest = found
+    x, y, z, square, steep, highest = numbers
     shift = x / count, y / count, z / count
     return SurfaceNumbers(shift, highest, max(square / count - shift[2] ** 2, 0.0), steep / count)
 

@@ -26,22 +26,22 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     """
     import xarray as xr  # half a second
 
-    found: dict[str, Labelled] = {}
+    variables: dict[str, Labelled] = {}
     table = np.array([*rows]).reshape(-1, 1 + len(kind.series))
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
     for column, name in enumerate(kind.series, 1):
-        found[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
+        variables[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
     for name, (array, unit) in scene.arrays().items():
         # If a plot has the same name, the name is that of the state.
-        own = f"state_{name}" if name in found else name
+        own = f"state_{name}" if name in variables else name
         dimensions = tuple(f"{own}_{axis}" for axis in range(array.ndim))
-        found[own] = (dimensions, array, attributes(*split_unit(unit)))
+        variables[own] = (dimensions, array, attributes(*split_unit(unit)))
     # The columns of the plots are there already.
     for name, measure in (measured(kind, scene) if kind.quantities else {}).items():
-        own = f"measured_{name}" if name in found else name
-        found[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
+        own = f"measured_{name}" if name in variables else name
+        variables[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
     for parameter, columns in (scene.curves() or {}).items():
-        found.update(columns_of(kind, parameter, columns))
+        variables.update(columns_of(kind, parameter, columns))
     coordinates = {
         "t": ("t", table[:, 0], attributes("s", "simulated time")),
         "now": ((), np.array(scene.time), attributes("s", "simulated time of the state")),
@@ -49,7 +49,7 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     values = {name: getattr(scene.params, name) for name in parameters_of(scene.params)}
     about = {"scene": kind.name, "link": link, "parameters": json.dumps(values),
              "notes": "\n".join(kind.notes(scene.params))}  # fmt: skip
-    return xr.Dataset(found, coordinates, about)
+    return xr.Dataset(variables, coordinates, about)
 
 
 def columns_of(kind: AnyKind, parameter: str, columns: Chart | Columns) -> Mapping[str, Labelled]:

@@ -265,9 +265,9 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
         setup = make_setup(scene_named(scene), "" if preset else None, parameters)
     kind = scene_named(setup.scene)
     if preset:
-        found = preset_setup("preset", preset, kind)
-        setup = with_values(setup, found.values)
-        for option, file in found.files.items():
+        base_setup = preset_setup("preset", preset, kind)
+        setup = with_values(setup, base_setup.values)
+        for option, file in base_setup.files.items():
             warnings.warn(f"The {option} {file} is not in {preset}: this lab runs without it", stacklevel=4)
     return kind, with_values(setup, parameters).params
 

@@ -55,8 +55,8 @@ class Output:
         """A box, and the script that finds the lab's page for it."""
         script = (resources.files("app.notebook") / "output.js").read_text("utf-8")
         name = f"springtide-{self.page_id}"
-        given = json.dumps({"box": name, "port": self.port, "key": self.key, "height": self.height})
-        return f'<div id="{name}"></div><script>{script.rstrip()}({given});</script>'
+        settings = json.dumps({"box": name, "port": self.port, "key": self.key, "height": self.height})
+        return f'<div id="{name}"></div><script>{script.rstrip()}({settings});</script>'
 
     def show_still(self, still: Still) -> None:
         """Keep a picture in the notebook, small while the page is open."""

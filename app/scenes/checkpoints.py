@@ -22,7 +22,7 @@ def restore(scene: object, kept: object) -> None:
 
 def arrays_in(value: object) -> dict[int, int]:
     """The arrays that a value holds, in containers and attributes: identity of the owner of the memory -> bytes."""
-    found: dict[int, int] = {}
+    sizes: dict[int, int] = {}
     seen: set[int] = set()
     waiting: list[object] = [value]
     while waiting:
@@ -32,11 +32,11 @@ def arrays_in(value: object) -> dict[int, int]:
         seen.add(id(one))
         if isinstance(one, np.ndarray):
             owner = one if one.base is None else one.base
-            found[id(owner)] = one.nbytes if one.base is None else getattr(owner, "nbytes", one.nbytes)
+            sizes[id(owner)] = one.nbytes if one.base is None else getattr(owner, "nbytes", one.nbytes)
         elif isinstance(one, dict):
             waiting.extend(one.values())
         elif isinstance(one, list | tuple | set | frozenset):
             waiting.extend(one)
         elif hasattr(one, "__dict__") and not callable(one):
             waiting.extend(vars(one).values())
-    return found
+    return sizes

@@ -119,27 +119,27 @@ def differences(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[list[str]]:
     }
     shared = set.intersection(*(set(shared_parameters(records[0], params)) for params in records))
     kinds = {kind.name for kind, _ in panes}
-    found: list[list[str]] = [[kind.title] if len(kinds) > 1 else [] for kind, _ in panes]
+    labels: list[list[str]] = [[kind.title] if len(kinds) > 1 else [] for kind, _ in panes]
     for name, parameter in first.items():
         if name not in common - shared or all(name in names for names in hidden):
             continue
         if all(getattr(params, name) == getattr(records[0], name) for params in records):
             continue
         title = parameter.title or in_words(name)
-        for words, params, names in zip(found, records, hidden, strict=True):
+        for words, params, names in zip(labels, records, hidden, strict=True):
             own = parameters_of(params)[name]
             if name not in names:
                 words.append(f"{title}: {written(own, getattr(params, name))}")
-    return found
+    return labels
 
 
 def headings(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[str]:
     """Title of each pane: its differences."""
-    found: list[str] = []
+    titles: list[str] = []
     for (kind, _), words in zip(panes, differences(panes), strict=True):
         more = f" · and {len(words) - MAX_NAMED} more" if len(words) > MAX_NAMED else ""
-        found.append((" · ".join(words[:MAX_NAMED]) or kind.title) + more)
-    return found
+        titles.append((" · ".join(words[:MAX_NAMED]) or kind.title) + more)
+    return titles
 
 
 def middle_of(name: str, params: BaseParams) -> tuple[float, float]:

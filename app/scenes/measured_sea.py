@@ -17,8 +17,8 @@ def moments_of(spectrum: Spectrum[Any]) -> Any:
 
 def height_and_period(params: Any) -> tuple[float, float]:
     """Hs [m] and Tp [s] of the measured spectrum of a sea."""
-    found = moments_of(measured_spectrum(params))
-    return found.significant_height, found.peak_period
+    moments = moments_of(measured_spectrum(params))
+    return moments.significant_height, moments.peak_period
 
 
 def measured_text(params: Any) -> Html:

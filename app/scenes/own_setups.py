@@ -31,21 +31,21 @@ def folder_of(kind: AnyKind) -> Path:
 
 def own_files(kind: AnyKind) -> dict[str, tuple[Path, Setup]]:
     """Name -> (file, set-up), in order of the names; at most `MAX_OWN` of those that can be read."""
-    found: dict[str, tuple[Path, Setup]] = {}
+    setups: dict[str, tuple[Path, Setup]] = {}
     try:
         paths = sorted(folder_of(kind).glob("*.json"))
     except OSError:
-        return found
+        return setups
     for path in paths:
-        if len(found) == MAX_OWN:
+        if len(setups) == MAX_OWN:
             break
         try:
             with path.open("rb") as file:
                 setup = read_file(file.read(4 * MAX_LENGTH + 1).decode("utf-8"), path.name, kind.name)
         except (OSError, ValueError):
             continue
-        found.setdefault(setup.name or path.stem, (path, setup))
-    return dict(sorted(found.items()))
+        setups.setdefault(setup.name or path.stem, (path, setup))
+    return dict(sorted(setups.items()))
 
 
 def keep_own(kind: AnyKind, name: str, text: str) -> None:

@@ -121,15 +121,17 @@ def recorded_quantities(kind: HasQuantities) -> Quantities:
 def plotted_quantities(kind: HasQuantities) -> Quantities:
     """The columns of the plots as quantities. Their instant is a plot row: column -> value."""
     taken = parameters_of(kind.params)
-    found = {}
+    quantities = {}
     for axes in kind.plots.values():
         for column in axes.series:
             name = slug(column)
             # The energy of gravity is not the parameter gravity.
             name = f"{name}_{slug(axes.title)}" if name in taken else name
             meaning = column if column == axes.title.lower() else f"{axes.title}: {column}"
-            found[name] = Quantity(axes.unit or "1", meaning, lambda row, column=column: row.get(column), shown=False)
-    return found
+            quantities[name] = Quantity(
+                axes.unit or "1", meaning, lambda row, column=column: row.get(column), shown=False
+            )
+    return quantities
 
 
 def slug(words: str) -> str:

@@ -152,9 +152,9 @@ def with_changes(params: BaseParams, setup: Setup) -> BaseParams:
     editing = scene_named(setup.scene).file_editing
     if editing is None or not setup.files or added_files(params) != setup.files:
         return params
-    found = dataclasses.replace(params, **{CHANGES: setup.changes})
-    editing.numbers(found)
-    return found
+    new_params = dataclasses.replace(params, **{CHANGES: setup.changes})
+    editing.numbers(new_params)
+    return new_params
 
 
 def differing_values(kind: AnyKind, params: BaseParams, preset: str) -> dict[str, Value]:
@@ -221,17 +221,17 @@ def read_query(query: str) -> Setup:
 
     Raises ValueError with all its errors.
     """
-    given = entries(query)
-    scene, wrong = given.get("scene", ""), Refusals()
+    texts = entries(query)
+    scene, wrong = texts.get("scene", ""), Refusals()
     with wrong:
         kind_named(scene)
     kind = scene_named(next(iter(difflib.get_close_matches(scene, NAMES, 1)), NAMES[0]))
     known = parameters_of(kind.params)
     values: dict[str, Value] = {}
-    if given.get("preset"):
+    if texts.get("preset"):
         with wrong:
-            preset_named("preset", given["preset"], kind)
-    for name, text in given.items():
+            preset_named("preset", texts["preset"], kind)
+    for name, text in texts.items():
         if name in OWN_KEYS:
             continue
         with wrong:
@@ -239,28 +239,28 @@ def read_query(query: str) -> Setup:
                 raise unknown_parameter(name, known)
             values[name] = parse_value(name, known[name], text)
     camera = None
-    if "camera" in given:
+    if "camera" in texts:
         with wrong:
-            camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
+            camera = read_camera([camera_number(text, texts["camera"]) for text in texts["camera"].split(",")])
     wrong.check()
-    return make_setup(kind, given.get("preset"), values)._replace(camera=camera)
+    return make_setup(kind, texts.get("preset"), values)._replace(camera=camera)
 
 
 def split_task(query: str) -> tuple[str, str]:
     """The task that a query names, "" for none, and the rest of the query. Raises ValueError as `read_query` does."""
-    given = entries(query)
-    return given.pop("task", ""), urlencode(given)
+    texts = entries(query)
+    return texts.pop("task", ""), urlencode(texts)
 
 
 def entries(query: str) -> dict[str, str]:
     """The values of a query by name. Raises ValueError if it is too long or names one twice."""
     check_length("address", query)
     pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
-    given = dict(pairs)
-    for name in given:
+    texts = dict(pairs)
+    for name in texts:
         if sum(other == name for other, _ in pairs) > 1:
             raise ValueError(f"{shortened(name)!r}: given more than once in the address")
-    return given
+    return texts
 
 
 def read_setup(text: str) -> Setup:
@@ -361,10 +361,10 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
         raise argument_error(f"{where}: version", version, f"1 to {VERSION}; a newer one needs a newer Springtide")
     if "parameters" not in content and "preset" not in content:
         raise argument_error(where, shortened(text), f"a file {form}")
-    found = content.get("scene", scene)
-    if scene is not None and found != scene:
-        raise argument_error(f"{where}: scene", found, scene)
-    kind = kind_named(found)
+    scene_name = content.get("scene", scene)
+    if scene is not None and scene_name != scene:
+        raise argument_error(f"{where}: scene", scene_name, scene)
+    kind = kind_named(scene_name)
     preset = content.get("preset", "")
     if preset != "":
         preset_named(f"{where}: preset", preset, kind)
@@ -382,7 +382,7 @@ def read_changes(what: str, given: object) -> Changes:
     """The changes of a file as JSON holds them. Raises ValueError."""
     if not isinstance(given, list) or len(given) > MOST_CHANGES:
         raise argument_error(what, shortened(str(given)), f"a list of at most {MOST_CHANGES} changes")
-    found: list[tuple[str, str, float]] = []
+    changes: list[tuple[str, str, float]] = []
     for one in given:
         if not (
             isinstance(one, list)
@@ -393,16 +393,16 @@ def read_changes(what: str, given: object) -> Changes:
         ):
             allowed = f'["length", "1", 210.0]: {" or ".join(CHANGED)}, of what, and metres above 0'
             raise argument_error(what, shortened(str(one)), allowed)
-        found.append((one[0], read_text(what, one[1], MAX_NAME), float(one[2])))
-    return tuple(found)
+        changes.append((one[0], read_text(what, one[1], MAX_NAME), float(one[2])))
+    return tuple(changes)
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
     """A JSON object. Raises ValueError for a repeated key, whose value would be ambiguous."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    members = dict(pairs)
+    if len(members) < len(pairs):
         raise ValueError("a key appears twice")
-    return found
+    return members
 
 
 def check_length(what: str, text: str) -> None:

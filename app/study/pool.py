@@ -54,7 +54,7 @@ def spread(work: Callable[..., R], tasks: Sequence[Arguments], title: str, worke
     """
     with progress_bar() as progress:
         bar = progress.add_task(title, total=len(tasks))
-        found: dict[int, R] = {}
+        results: dict[int, R] = {}
         if workers == 1:
             pairs: Iterator[tuple[int, R | Killed]] = ((i, work(*task)) for i, task in enumerate(tasks))
         else:
@@ -62,9 +62,9 @@ def spread(work: Callable[..., R], tasks: Sequence[Arguments], title: str, worke
         for index, result in pairs:
             if isinstance(result, Killed):
                 raise OSError(f"{title}, part {index + 1} of {len(tasks)}: {result.reason}")
-            found[index] = result
+            results[index] = result
             progress.advance(bar)
-    return [found[index] for index in range(len(tasks))]
+    return [results[index] for index in range(len(tasks))]
 
 
 def run_tasks(

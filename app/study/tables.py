@@ -86,8 +86,8 @@ def edges(values: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
     """Edges (n + 1,) of the cells of `values` (n,), halfway between them or between their logarithms."""
     v = np.log(values) if logarithmic else np.asarray(values, float)
     middle = 0.5 * (v[1:] + v[:-1])
-    found = np.concatenate([[2 * v[0] - middle[0]], middle, [2 * v[-1] - middle[-1]]])
-    return np.exp(found) if logarithmic else found
+    boundaries = np.concatenate([[2 * v[0] - middle[0]], middle, [2 * v[-1] - middle[-1]]])
+    return np.exp(boundaries) if logarithmic else boundaries
 
 
 def draw_map(axes: Any, x: np.ndarray, y: np.ndarray, values: Any, *, log: tuple[bool, bool], **colours: Any) -> Any:

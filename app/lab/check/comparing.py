@@ -38,9 +38,9 @@ def conform(value: Any, like: Any) -> Any:
     if value is None:
         raise Wrong("it returns nothing here: each way through the function must end with a return", "returns nothing")
     if isinstance(value, Foreign | str):
-        found = value.type_name if isinstance(value, Foreign) else "text"
-        cure = CURES.get(found, "")
-        raise Wrong(f"it returns a value of type {found}; expected {form_of(like)}{cure}", "wrong type")
+        type_name = value.type_name if isinstance(value, Foreign) else "text"
+        cure = CURES.get(type_name, "")
+        raise Wrong(f"it returns a value of type {type_name}; expected {form_of(like)}{cure}", "wrong type")
     if isinstance(like, tuple):
         if isinstance(value, np.ndarray):
             value = list(value) if value.ndim else [value]

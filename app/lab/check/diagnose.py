@@ -112,12 +112,12 @@ def with_repair(student: StudentFunction, samples: Sequence[Sample], error: Wron
 
     first: number of its input; None for the last one.
     """
-    found = repair(
+    explanation = repair(
         student, samples, last_input(student, samples) if first is None else first, "traps", "causes", "slips"
     )
-    if found is None:
+    if explanation is None:
         return error
-    return Wrong(f"{error}. {found.text}", error.mistake, line=found.line)
+    return Wrong(f"{error}. {explanation.text}", error.mistake, line=explanation.line)
 
 
 def last_input(student: StudentFunction, samples: Sequence[Sample]) -> int:
@@ -132,9 +132,9 @@ def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]
     unit = UNIT.search(student.task.function.__doc__ or "")
     if why.mistake != "constant factor" or unit is None:
         return why
-    found, right = (np.concatenate([part.ravel() for t in trials for part in parts(getattr(t, which))])
+    results, right = (np.concatenate([part.ravel() for t in trials for part in parts(getattr(t, which))])
                     for which in ("found", "right"))  # fmt: skip
-    ratio = float(np.median((found / np.where(right == 0.0, np.nan, right))[right != 0.0]))
+    ratio = float(np.median((results / np.where(right == 0.0, np.nan, right))[right != 0.0]))
     prefix = next((sign for sign, factor in PREFIXES.items() if abs(ratio - factor) < 1e-4 * factor), "")
     return why._replace(text=f"{why.text} Is it in {prefix}{unit[1]}? It must be in {unit[1]}.") if prefix else why
 
@@ -281,10 +281,10 @@ def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
             return False
         changed_reference = True
         try:
-            found = student.trial(sample).found
+            result = student.trial(sample).found
         except (RunError, Wrong):  # as of an input that the task does not have
             return False
-        if not same(found, one.found, 0.0):
+        if not same(result, one.found, 0.0):
             return False
     return changed_reference
 
@@ -313,23 +313,23 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     if compared is None:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
         raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
-    found = differences.explain_where(compared, names, part_names(student, trials), ())
+    explanation = differences.explain_where(compared, names, part_names(student, trials), ())
     if text := other_calls(student, wrong) or steps_in_sum(student, trials):
-        return found._replace(text=f"{text} {found.text}")
+        return explanation._replace(text=f"{text} {explanation.text}")
     if (error := nearly(trials[:RANDOM])) is not None:
         text = f"At ordinary inputs it differs by at most {100.0 * error:.2g} %: a rounded number, or too large a step?"
-        return found._replace(text=f"{text} {found.text}")
-    if found.mistake:
-        return found
+        return explanation._replace(text=f"{text} {explanation.text}")
+    if explanation.mistake:
+        return explanation
     try:
         behave(student)
     except Wrong as failed:
         if failed.mistake not in UNFIT:
             said = str(failed)
             return Explanation(
-                failed.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {shown_last(student) or found.text}"
+                failed.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {shown_last(student) or explanation.text}"
             )
-    return found
+    return explanation
 
 
 def other_calls(student: StudentFunction, trial: Trial) -> str:
@@ -435,6 +435,8 @@ def error_with_repair(student: StudentFunction, samples: Sequence[Sample], error
         return error
     first = last_input(student, samples)
     with contextlib.suppress(RunError, Wrong):
-        if (found := repair(student, samples, first, "traps", "causes", "slips")) is not None:
-            return RunError(error.kind, f"{error.text.rstrip('.')}. {found.text}", error.file, found.line or error.line)
+        if (explanation := repair(student, samples, first, "traps", "causes", "slips")) is not None:
+            return RunError(
+                error.kind, f"{error.text.rstrip('.')}. {explanation.text}", error.file, explanation.line or error.line
+            )
     return RunError(error.kind, in_plain_words(error.text), error.file, error.line)

@@ -125,7 +125,7 @@ def edges(function: Callable[..., Any], drawn: Sequence[Sample]) -> list[Edge]:
     """
     watched = Watched(function)
     noted = [(sample, watched.sides(sample)) for sample in drawn]
-    found = []
+    all_edges = []
     for number, text in enumerate(watched.texts):
         pairs = (
             (one, other, first)
@@ -134,9 +134,9 @@ def edges(function: Callable[..., Any], drawn: Sequence[Sample]) -> list[Edge]:
         )
         for one, other, first in pairs:
             if (edge := edge_between(function, watched, number, text, one, other, first)) is not None:
-                found.append(edge)
+                all_edges.append(edge)
                 break
-    return found
+    return all_edges
 
 
 def first_crossing(one: np.ndarray, other: np.ndarray) -> int | None:

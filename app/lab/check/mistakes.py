@@ -35,19 +35,19 @@ def mistakes(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> list[Class
     for name, results in students:
         for key in dict.fromkeys(key for result in results for key in mistakes_of(result)):
             folders.setdefault(key, []).append(name)
-    found = [ClassMistake(*key, tuple(own)) for key, own in folders.items()]
-    return sorted(found, key=lambda mistake: -len(mistake.folders))
+    class_mistakes = [ClassMistake(*key, tuple(own)) for key, own in folders.items()]
+    return sorted(class_mistakes, key=lambda mistake: -len(mistake.folders))
 
 
 def mistakes_of(result: TaskResult) -> list[tuple[str, str]]:
     """Place and name of each mistake in a task."""
     task, program = result.task, result.program
-    found = []
+    pairs = []
     if program is not None and program.state == "failed":
-        found.append((program.file or f"{task.item} {task.name}", "does not run"))
+        pairs.append((program.file or f"{task.item} {task.name}", "does not run"))
     elif program is not None and program.state == "wrong":
-        found.append((f"{task.item} {task.name}", program.mistake or kind_of(program.text)))
-    return found + [
+        pairs.append((f"{task.item} {task.name}", program.mistake or kind_of(program.text)))
+    return pairs + [
         (f"{task.item} {in_words(answer.question.key)}", f"{answer_text(answer.answer)}: {answer.text}")
         for answer in result.answers
         if answer.state == "wrong" and answer.question.right is not None

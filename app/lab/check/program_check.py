@@ -160,12 +160,12 @@ def draw(runner: Runner, task: Task) -> Points | None:
     x = np.asarray(curve.x, np.float64)
     reference = np.asarray(curve.values(task.function, x), np.float64)
     try:
-        found = np.asarray(curve.values(StudentFunction(runner, task, is_watched=False), x), np.float64)
+        values = np.asarray(curve.values(StudentFunction(runner, task, is_watched=False), x), np.float64)
     except (RunError, Wrong, ValueError, IndexError):  # its message stands above the curve
-        found = None
-    if found is not None and found.shape != x.shape:
-        found = None
-    return Points(curve.x_label, curve.y_label, x, reference, found)
+        values = None
+    if values is not None and values.shape != x.shape:
+        values = None
+    return Points(curve.x_label, curve.y_label, x, reference, values)
 
 
 def compare(student: StudentFunction) -> None:

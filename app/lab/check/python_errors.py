@@ -54,6 +54,6 @@ INNER_NAME = re.compile(r"[\w.]+\.<locals>\.(\w+)|\b[A-Za-z]\w*\.__call__")
 
 def in_plain_words(text: str) -> str:
     """An error's own text, and the cure if it is known."""
-    said = INNER_NAME.sub(lambda found: found[1] or "the function", text)
+    said = INNER_NAME.sub(lambda match: match[1] or "the function", text)
     cure = next((words for pattern, words in ERRORS if pattern.search(text)), "")
     return f"{said.rstrip('.')}. {cure}" if cure else said

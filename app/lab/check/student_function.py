@@ -97,11 +97,11 @@ class StudentFunction:
     def in_form(self, sample: tuple[Any, ...], value: Any) -> tuple[Any, Any]:
         """A result in the form of the reference's, beside that one. Raises Wrong."""
         self.sample, right = sample, self.reference(*sample)
-        found = conform(value, right)
-        self.last = Trial(sample, found, right)
+        result = conform(value, right)
+        self.last = Trial(sample, result, right)
         if not self.takes_all and (error := self.not_finite(self.last)) is not None:
             raise error
-        return found, right
+        return result, right
 
     def check_time(self) -> None:
         """Raises RunError after more time than a task may take."""
@@ -163,8 +163,8 @@ class StudentFunction:
 
     def trials(self, samples: Sequence[tuple[Any, ...]], twice: int = 0) -> Iterator[Trial]:
         """Its results at several inputs beside the right ones. twice: as of `results`. Raises RunError or Wrong."""
-        for sample, (found, right) in zip(samples, self.results(samples, twice), strict=True):
-            yield Trial(sample, self.normalised(found), self.normalised(right))
+        for sample, (result, right) in zip(samples, self.results(samples, twice), strict=True):
+            yield Trial(sample, self.normalised(result), self.normalised(right))
 
     def normalised(self, value: Any) -> Any:
         """A result in the form in which results are compared."""

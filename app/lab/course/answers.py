@@ -116,12 +116,12 @@ def shown(value: Any) -> str:
 def strangers(answers: Answers, tasks: Sequence[Task]) -> list[str]:
     """Sentences on entries that belong to no question, such as a misspelt one."""
     known = {(task.name, question.key) for task in tasks for question in task.questions}
-    found = []
+    sentences = []
     for task, key in answers.values:
         if (task, key) not in known and key not in (DONE, SHOWN) and answers.values[task, key] != "":
             near = difflib.get_close_matches(key, [other for name, other in known if name == task], 1)
-            found.append(f"{FILE} {task}.{key}: there is no such question{f'; is it {near[0]}?' if near else ''}")
-    return found
+            sentences.append(f"{FILE} {task}.{key}: there is no such question{f'; is it {near[0]}?' if near else ''}")
+    return sentences
 
 
 def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: str, key: str, value: Value) -> None:

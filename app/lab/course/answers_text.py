@@ -28,9 +28,9 @@ class Unread(NamedTuple):
     @property
     def sentence(self) -> str:
         """The entry and the cure in words."""
-        shown = " ".join(self.text.split())
-        shown = shown if len(shown) <= SHOWN else f"{shown[:SHOWN]} ..."
-        return f"line {self.line}: {shown or 'nothing'} cannot be read: {self.cure}"
+        text = " ".join(self.text.split())
+        text = text if len(text) <= SHOWN else f"{text[:SHOWN]} ..."
+        return f"line {self.line}: {text or 'nothing'} cannot be read: {self.cure}"
 
 
 def loads(text: str, **options: Any) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def with_backslashes(text: str) -> str:
     """A TOML text with doubled backslashes where they are meant as such."""
     lines = text.split("\n")
     return "\n".join(
-        line if "\\" not in line or LITERAL.search(line) else BACKSLASH.sub(lambda found: f"{found[0]}\\", line)
+        line if "\\" not in line or LITERAL.search(line) else BACKSLASH.sub(lambda match: f"{match[0]}\\", line)
         for line in lines
     )
 

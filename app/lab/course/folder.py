@@ -28,13 +28,13 @@ def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
     Two paths of one folder have the same name.
     """
     paths = {folder: Path(os.path.abspath(folder)) for folder in folders}
-    found = {}
+    names = {}
     for folder, path in paths.items():
         others = set(paths.values()) - {path}
         ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
         own = next((end for end in ends if not any(other.parts[-len(end) :] == end for other in others)), path.parts)
-        found[folder] = Path(*own).as_posix()
-    return found
+        names[folder] = Path(*own).as_posix()
+    return names
 
 
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:

@@ -58,17 +58,17 @@ class Condition(NamedTuple):
 
     def holds(self, values: LiveValues) -> bool:
         """True if it holds; a missing value fulfils no condition."""
-        found = values.get(self.name)
-        if isinstance(found, LiveNumber) and isinstance(self.value, float):
+        live_value = values.get(self.name)
+        if isinstance(live_value, LiveNumber) and isinstance(self.value, float):
             if self.relation == "=":
-                return math.isclose(found.value, self.value, rel_tol=1e-6, abs_tol=1e-12)
-            return RELATIONS[self.relation](found.value, self.value)
-        return type(found) is type(self.value) and found == self.value
+                return math.isclose(live_value.value, self.value, rel_tol=1e-6, abs_tol=1e-12)
+            return RELATIONS[self.relation](live_value.value, self.value)
+        return type(live_value) is type(self.value) and live_value == self.value
 
 
 def read_conditions(where: str, table: Mapping[str, Any]) -> tuple[Condition, ...]:
     """The conditions of a TOML table: name = value, or name = "> 5". Raises ValueError for another form."""
-    found = []
+    conditions = []
     for name, value in table.items():
         relation = next((r for r in RELATIONS if isinstance(value, str) and value.startswith(r)), "=")
         if relation != "=":
@@ -80,8 +80,8 @@ def read_conditions(where: str, table: Mapping[str, Any]) -> tuple[Condition, ..
             value = float(value)
         if not isinstance(value, bool | str | float):
             raise argument_error(f"{where}: {name}", value, "a number, a text, true or false")
-        found.append(Condition(name, relation, value))
-    return tuple(found)
+        conditions.append(Condition(name, relation, value))
+    return tuple(conditions)
 
 
 class NamesOnly(string.Formatter):

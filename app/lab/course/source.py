@@ -41,11 +41,11 @@ class Source(NamedTuple):
         True without a function too: running the file says what is wrong. Of a file that cannot be parsed, only if none
         of its functions has a body.
         """
-        found = self.definitions.get(name)
+        own_definition = self.definitions.get(name)
         if self.is_parsed:
-            return found is None or found.is_begun
+            return own_definition is None or own_definition.is_begun
         others = any(definition.is_begun for definition in self.definitions.values())
-        return not others or (found is not None and found.is_begun)
+        return not others or (own_definition is not None and own_definition.is_begun)
 
     def line_of(self, name: str) -> int | None:
         """The line on which a function begins; None without one."""
@@ -53,7 +53,9 @@ class Source(NamedTuple):
 
     def name_at(self, line: int) -> str:
         """The function in which a line lies, or ""."""
-        return next((name for name, found in self.definitions.items() if found.first <= line <= found.last), "")
+        return next(
+            (name for name, definition in self.definitions.items() if definition.first <= line <= definition.last), ""
+        )
 
 
 def read_source(data: bytes) -> Source:
@@ -125,8 +127,8 @@ def is_empty(line: ast.stmt) -> bool:
 def blocks(lines: list[str]) -> Iterator[tuple[str, Definition]]:
     """The functions of a file that cannot be parsed, each from its `def` to the next statement at the margin."""
     for first, line in enumerate(lines):
-        found = DEFINITION.match(line)
-        if found:
+        match = DEFINITION.match(line)
+        if match:
             after = range(first + 1, len(lines))
             end = next((number for number in after if STATEMENT.match(lines[number])), len(lines))
             try:
@@ -134,4 +136,4 @@ def blocks(lines: list[str]) -> Iterator[tuple[str, Definition]]:
                 is_begun = not (isinstance(node, ast.FunctionDef) and all(is_empty(part) for part in node.body))
             except PARSE_ERRORS:
                 is_begun = True
-            yield found[1], Definition(first + 1, end, is_begun)
+            yield match[1], Definition(first + 1, end, is_begun)

@@ -161,13 +161,13 @@ def load_tasks(*folders: Path, with_checks: bool = True) -> tuple[Task, ...]:
 
     Raises ValueError for a file that is no task, with the file's name and what is wrong.
     """
-    found: dict[str, Task] = {}
+    tasks: dict[str, Task] = {}
     for folder in (*TASKS, *folders):
         if not folder.is_dir():
             raise argument_error("--tasks", str(folder), "a folder with tasks in TOML files")
         for path in sorted(folder.glob("*.toml")):
-            found[path.stem] = read_task(path, with_checks=with_checks)
-    return tuple(sorted(found.values(), key=position))
+            tasks[path.stem] = read_task(path, with_checks=with_checks)
+    return tuple(sorted(tasks.values(), key=position))
 
 
 def position(task: Task) -> tuple[tuple[int, ...], int, str]:
@@ -184,16 +184,16 @@ def read_task(path: Path, *, with_checks: bool = True) -> Task:
     if not NAME.fullmatch(path.stem):
         raise argument_error("task", path.name, "a file name of small letters, digits and underscores")
     try:
-        found = msgspec.convert(prepared("", table), TaskFile)
+        record = msgspec.convert(prepared("", table), TaskFile)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}; docs/lab.md lists the entries") from None
     code = path.with_suffix(".py")
-    if bool(found.file) != code.exists():
-        raise argument_error(f"{path.name}: file", found.file, "a name, if a Python file lies beside it, or no entry")
-    if not found.file and not found.questions:
+    if bool(record.file) != code.exists():
+        raise argument_error(f"{path.name}: file", record.file, "a name, if a Python file lies beside it, or no entry")
+    if not record.file and not record.questions:
         raise argument_error("task", path.name, "a Python file of the same name beside it, or questions")
-    check = load_check(code) if with_checks and found.file else None
-    return Task(**msgspec.structs.asdict(found), name=path.stem, check=check)
+    check = load_check(code) if with_checks and record.file else None
+    return Task(**msgspec.structs.asdict(record), name=path.stem, check=check)
 
 
 def prepared(key: str, value: Any) -> Any:

@@ -305,9 +305,9 @@ def whole_numbers(tree: Tree) -> Iterator[Candidate]:
     swaps: list[Swap] = []
     for call in tree.of(ast.Call):
         name, new = name_of(call), copy.deepcopy(call)
-        kept = [key for key in new.keywords if not (key.arg == "dtype" and source_of(key.value) in WHOLE)]
-        if len(kept) < len(call.keywords):
-            new.keywords = kept
+        keywords = [key for key in new.keywords if not (key.arg == "dtype" and source_of(key.value) in WHOLE)]
+        if len(keywords) < len(call.keywords):
+            new.keywords = keywords
             swaps.append((call, new))
         elif len(call.args) > 1 and source_of(call.args[-1]) in WHOLE:
             new.args.pop()
@@ -488,8 +488,8 @@ def reductions(tree: Tree) -> Iterator[Candidate]:
         if name_of(call) not in REDUCTIONS or not isinstance(call.func, ast.Attribute):
             continue
         new = copy.deepcopy(call)
-        kept = [key for key in new.keywords if key.arg not in ("axis", "keepdims")]
-        new.keywords = [*kept, ast.keyword("axis", ast.Constant(1)), ast.keyword("keepdims", ast.Constant(True))]
+        keywords = [key for key in new.keywords if key.arg not in ("axis", "keepdims")]
+        new.keywords = [*keywords, ast.keyword("axis", ast.Constant(1)), ast.keyword("keepdims", ast.Constant(True))]
         swaps.append((call, new))
     yield from together(swaps, "A row of the array is a point: give each row its own value.")
 

@@ -73,8 +73,8 @@ def case_of(trials: Sequence[Difference], cases: Sequence[Case]) -> str:
 
 def part_of(wrong: Sequence[Difference], parts: Sequence[str]) -> str:
     """The only wrong part of a result, if others are right."""
-    found = {i for trial in wrong for i, part in enumerate(trial.wrong) if part.any()}
-    return f"in the {parts[found.pop()]}" if len(parts) > 1 and len(found) == 1 else ""
+    indices = {i for trial in wrong for i, part in enumerate(trial.wrong) if part.any()}
+    return f"in the {parts[indices.pop()]}" if len(parts) > 1 and len(indices) == 1 else ""
 
 
 def entries_of(wrong: Sequence[Difference]) -> str:
@@ -113,20 +113,20 @@ def is_held(wrong: Sequence[Difference]) -> bool:
 def example(trial: Difference, names: Sequence[str], parts: Sequence[str]) -> str:
     """One input, and both values there: the first number that differs, or the few of them."""
     i = next(i for i, part in enumerate(trial.wrong) if part.any())
-    found, right, wrong = trial.found[i], trial.right[i], trial.wrong[i]
+    result, right, wrong = trial.found[i], trial.right[i], trial.wrong[i]
     name = f" as {parts[i]}" if len(parts) > 1 else ""
     which: int | None = None
-    if found.ndim and found.size > MAX_NUMBERS:
+    if result.ndim and result.size > MAX_NUMBERS:
         which = int(np.argwhere(wrong)[0][0])
-        found, right = found[which], right[which]
+        result, right = result[which], right[which]
         name += f" at number {which + 1}" + (" (the last)" if which == len(wrong) - 1 else "")
-    given = [
+    inputs = [
         f"{name} = {text}"
         for name, value in zip(names, trial.arguments, strict=True)
         if (text := shown(value, which, len(wrong) if wrong.ndim else 0))
     ]
-    at = f"With {', '.join(given)} it returns" if given else "It returns"
-    return f"{at} {number(found)}{name}; expected {number(right)}."
+    at = f"With {', '.join(inputs)} it returns" if inputs else "It returns"
+    return f"{at} {number(result)}{name}; expected {number(right)}."
 
 
 def shown(value: Any, which: int | None, length: int) -> str:

@@ -174,23 +174,25 @@ class Tree:
             pairs = zip(owners, candidate.swaps, strict=True)
             after = [source_of(new) if owner is node else source_of(owner) for owner, (node, new) in pairs]
         inner = {child for owner in owners for child in ast.walk(owner) if child is not owner}
-        shown = tuple(dict.fromkeys(
+        replacements = tuple(dict.fromkeys(
             Shown(text, new, getattr(owner, "lineno", 0))
             for owner, text, new in zip(owners, before, after, strict=True) if owner not in inner
         ))  # fmt: skip
-        length = sum(abs(len(one.after) - len(one.before)) for one in shown)
-        return EditWords((candidate.kind, len(shown), length), candidate.cause, candidate.condition, shown)
+        length = sum(abs(len(one.after) - len(one.before)) for one in replacements)
+        return EditWords(
+            (candidate.kind, len(replacements), length), candidate.cause, candidate.condition, replacements
+        )
 
     def shown_node(self, node: ast.AST) -> ast.AST:
         """The expression or statement that shows a replacement: long enough, and the only such one in its line."""
-        shown = node
-        while not isinstance(shown, ast.stmt):
-            outer = self.outer(shown)
-            is_clear = isinstance(shown, ast.expr) and not self.is_double(shown)
-            if is_clear and (isinstance(outer, ast.stmt) or not (len(source_of(shown)) < SHORT or is_sliced(shown))):
+        part = node
+        while not isinstance(part, ast.stmt):
+            outer = self.outer(part)
+            is_clear = isinstance(part, ast.expr) and not self.is_double(part)
+            if is_clear and (isinstance(outer, ast.stmt) or not (len(source_of(part)) < SHORT or is_sliced(part))):
                 break
-            shown = outer
-        return shown
+            part = outer
+        return part
 
     def outer(self, node: ast.AST) -> ast.AST:
         """The expression or statement around a node, past keywords and loops inside of brackets."""

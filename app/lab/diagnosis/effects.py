@@ -81,29 +81,29 @@ def watched(
     modules: in which it may store state. folder: of the student's files. twice: also compare a second call with
     equal arguments.
     """
-    given = copied(arguments)
-    before = [digest(value) for value in given]
+    copies = copied(arguments)
+    before = [digest(value) for value in copies]
     state = state_of(modules) | settings()
     with restored(), AUDIT.written(folder) as files:
-        value = function(*given)
+        value = function(*copies)
         after = state_of(modules) | settings()
-    names = names_of(function, len(given))
-    changed = [name for name, now, old in zip(names, given, before, strict=True) if digest(now) != old]
+    names = names_of(function, len(copies))
+    changed = [name for name, now, old in zip(names, copies, before, strict=True) if digest(now) != old]
     if changed:
         place = traced(function, copied(arguments), folder, lambda now: [digest(value) for value in now] != before)
         raise argument_effect(function, changed, place)
     if any(key in SETTINGS and key not in state for key in after):  # it has loaded a module with random numbers
         shake()
         return watched(function, modules, arguments, folder, anew, twice=twice)
-    kept = [key for key in after if after[key] != state.get(key)]
-    if (twice or kept) and is_plain(value):
+    state_changes = [key for key in after if after[key] != state.get(key)]
+    if (twice or state_changes) and is_plain(value):
         with restored():
             differs = not alike(value, function(*copied(arguments)))
             alternates = differs and alike(value, function(*copied(arguments)))
         if differs:
-            raise state_effect(anew, kept, arguments, folder, alternates=alternates, differs=True)
-    if kept:
-        raise state_effect(anew, kept, arguments, folder, alternates=False, differs=False)
+            raise state_effect(anew, state_changes, arguments, folder, alternates=alternates, differs=True)
+    if state_changes:
+        raise state_effect(anew, state_changes, arguments, folder, alternates=False, differs=False)
     if files:
         path, place = files[0]
         text = f"it writes the file {Path(path).name}{in_line(function, place)}. A function only returns its result."
@@ -166,9 +166,9 @@ def in_line(function: Callable[..., Any], place: CodeLine | None) -> str:
         return ""
     statement = statement_at(place)
     code = "" if statement is None else ast.unparse(statement)
-    shown = f": {code}" if code and len(code) <= MAX_CODE and "\n" not in code else ""
+    excerpt = f": {code}" if code and len(code) <= MAX_CODE and "\n" not in code else ""
     other = f", which {place.function} runs" if place.function != function.__name__ else ""
-    return f" (line {place.line}{other}{shown})"
+    return f" (line {place.line}{other}{excerpt})"
 
 
 def file_and_line(place: CodeLine | None) -> tuple[str, int | None]:
@@ -184,12 +184,12 @@ def statement_at(place: CodeLine | None) -> ast.stmt | None:
         tree = ast.parse(Path(place.path).read_bytes())
     except (OSError, SyntaxError, ValueError):
         return None
-    found = [
+    statements = [
         node
         for node in ast.walk(tree)
         if isinstance(node, ast.stmt) and node.lineno <= place.line <= (node.end_lineno or node.lineno)
     ]
-    return None if not found or hasattr(found[-1], "body") else found[-1]
+    return None if not statements or hasattr(statements[-1], "body") else statements[-1]
 
 
 def names_of(function: Callable[..., Any], number: int) -> list[str]:
@@ -256,7 +256,7 @@ def is_plain(value: Any) -> bool:
 
 def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
     """The state that functions of modules may keep: names in words, with digests. The first module goes unnamed."""
-    found: dict[str, Any] = {}
+    digests: dict[str, Any] = {}
     folder = os.path.dirname(getattr(modules[0], "__file__", None) or "")
     for module in modules:
         inside = "" if module is modules[0] else f"{module.__name__}."
@@ -265,34 +265,34 @@ def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
                 continue
             name = f"{inside}{own_name}"
             if isinstance(value, types.FunctionType):
-                found.update(state_of_function(name, value, folder))
+                digests.update(state_of_function(name, value, folder))
             elif isinstance(value, type) and value.__module__ == module.__name__:
                 parts = {key: part for key, part in vars(value).items() if not key.startswith("__")}
-                found.update({f"{name}.{key}": digest(part, folder) for key, part in parts.items()})
+                digests.update({f"{name}.{key}": digest(part, folder) for key, part in parts.items()})
             else:
-                found[name] = digest(value, folder)
-    return found
+                digests[name] = digest(value, folder)
+    return digests
 
 
 def state_of_function(name: str, function: types.FunctionType, folder: str) -> Mapping[str, Any]:
     """The state that a function itself holds: attributes, values of defaults, names around it."""
-    found = {f"{name}.{key}": digest(value, folder) for key, value in vars(function).items()}
+    digests = {f"{name}.{key}": digest(value, folder) for key, value in vars(function).items()}
     code = function.__code__
     arguments = code.co_varnames[: code.co_argcount]
     defaults = function.__defaults__ or ()
     for argument, value in zip(arguments[len(arguments) - len(defaults) :], defaults, strict=True):
-        found[f"the default of the argument {argument} of {name}"] = digest(value, folder)
+        digests[f"the default of the argument {argument} of {name}"] = digest(value, folder)
     for cell_name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
         try:
-            found[f"{cell_name} in {name}"] = digest(cell.cell_contents, folder)
+            digests[f"{cell_name} in {name}"] = digest(cell.cell_contents, folder)
         except ValueError:  # nothing in it yet
             continue
-    return found
+    return digests
 
 
 def settings() -> dict[str, Any]:
     """Settings of Python and numpy that a function may change, as of `state_of`."""
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "numpy's error handling": tuple(np.geterr().values()),
         "numpy's print options": repr(np.get_printoptions()),
         "the working folder": os.getcwd(),
@@ -301,10 +301,10 @@ def settings() -> dict[str, Any]:
         "the module search path": tuple(sys.path),
     }
     if (numpy_random := sys.modules.get("numpy.random")) is not None:
-        found[RANDOM[0]] = digest(numpy_random.get_state())
+        values[RANDOM[0]] = digest(numpy_random.get_state())
     if (python_random := sys.modules.get("random")) is not None:
-        found[RANDOM[1]] = hash(python_random.getstate())
-    return found
+        values[RANDOM[1]] = hash(python_random.getstate())
+    return values
 
 
 @contextlib.contextmanager
@@ -329,17 +329,17 @@ def traced(
     has_changed: from the arguments.
     """
     last: CodeLine | None = None
-    found: CodeLine | None = None
+    code_line: CodeLine | None = None
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
-        nonlocal last, found
-        if found is None and has_changed(arguments):
-            found = last
+        nonlocal last, code_line
+        if code_line is None and has_changed(arguments):
+            code_line = last
         if event == "line":
             last = place_of(frame)
         elif event == "return" and frame.f_back is not None and is_own(frame.f_back):
             last = place_of(frame.f_back)
-        return None if found is not None else trace
+        return None if code_line is not None else trace
 
     def is_own(frame: FrameType) -> bool:
         return os.path.dirname(frame.f_code.co_filename) == str(folder)
@@ -352,7 +352,7 @@ def traced(
         pass
     finally:
         sys.settrace(before)
-    return found
+    return code_line
 
 
 def place_of(frame: FrameType) -> CodeLine:
@@ -390,10 +390,10 @@ class Audit:
     def written(self, folder: Path) -> Iterator[Written]:
         """Path and line of each file that this thread writes in a `with` block."""
         self.listen()
-        found: Written = []
-        self.found, self.thread, self.folder = found, threading.get_ident(), str(folder)
+        writes: Written = []
+        self.found, self.thread, self.folder = writes, threading.get_ident(), str(folder)
         try:
-            yield found
+            yield writes
         finally:
             self.found = None
 

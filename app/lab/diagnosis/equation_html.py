@@ -20,12 +20,12 @@ def equation_lines(equations: Sequence[Equation]) -> Html:
 
 def equation_line(line: Equation) -> Html:
     """One equation."""
-    found = join(
+    expression = join(
         fill('<b class="wrong">{}</b>', notation(piece.text)) if piece.wrong else notation(piece.text)
         for piece in line.found
     )
     right = fill('<div class="right">must be {}</div>', notation(line.right)) if line.right else Html()
-    return fill("<div>{} = {}{}</div>", notation(line.name), found, right)
+    return fill("<div>{} = {}{}</div>", notation(line.name), expression, right)
 
 
 def notation(text: str) -> Html:

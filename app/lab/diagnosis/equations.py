@@ -38,14 +38,14 @@ class TableauRow(NamedTuple):
 
 def lines_of(tableau: StepTableau) -> list[TableauRow]:
     """The rows of a tableau: position and velocity of each stage, and of the result."""
-    found = []
+    rows = []
     for stage in range(tableau.stages + 1):
         is_last = stage == tableau.stages
         for letter, part in (("x", tableau.positions), ("v", tableau.velocities)):
             if letter == "x" or is_last or tableau.with_velocity:
                 name = f"{NEW} {letter}" if is_last else f"{letter}{stage + 1}"
-                found.append(TableauRow(name, part[stage], letter == "x"))
-    return found
+                rows.append(TableauRow(name, part[stage], letter == "x"))
+    return rows
 
 
 def symbols_of(tableau: StepTableau, line: TableauRow) -> dict[str, np.ndarray]:
@@ -53,16 +53,16 @@ def symbols_of(tableau: StepTableau, line: TableauRow) -> dict[str, np.ndarray]:
     size = tableau.stages + FIRST_ACCELERATION
     unit = np.zeros((size, size, len(POWERS)))
     unit[range(size), range(size), np.flatnonzero(POWERS == 0)[0]] = 1.0
-    found = {"x": unit[0], "v": unit[1]}
+    symbols = {"x": unit[0], "v": unit[1]}
     stage = tableau.stages if line.name.startswith(NEW) else int(line.name[1:]) - 1
     for row in range(stage):
-        found[f"x{row + 1}"] = tableau.positions[row]
+        symbols[f"x{row + 1}"] = tableau.positions[row]
         if tableau.with_velocity:
-            found[f"v{row + 1}"] = tableau.velocities[row]
-        found[f"a{row + 1}"] = unit[row + FIRST_ACCELERATION]
+            symbols[f"v{row + 1}"] = tableau.velocities[row]
+        symbols[f"a{row + 1}"] = unit[row + FIRST_ACCELERATION]
     if line.name == f"{NEW} x":
-        found[f"{NEW} v"] = tableau.velocities[-1]
-    return found
+        symbols[f"{NEW} v"] = tableau.velocities[-1]
+    return symbols
 
 
 def distinct(terms: Mapping[Monomial, np.ndarray]) -> list[Monomial]:
@@ -85,7 +85,7 @@ def times_power(vector: np.ndarray, power: int) -> np.ndarray:
 
 def terms_for(line: TableauRow, symbols: Mapping[str, np.ndarray]) -> dict[Monomial, np.ndarray]:
     """The terms that the equation of a row may have."""
-    found = {}
+    terms = {}
     for name, vector in symbols.items():
         letter = name.removeprefix(f"{NEW} ")[0]
         if line.is_position:
@@ -93,8 +93,8 @@ def terms_for(line: TableauRow, symbols: Mapping[str, np.ndarray]) -> dict[Monom
         else:
             powers = {"x": (0,) if name == "x" else (), "v": (0, 1), "a": (-1, 0, 1, 2)}[letter]
         for power in powers:
-            found[name, power] = times_power(vector, power)
-    return found
+            terms[name, power] = times_power(vector, power)
+    return terms
 
 
 def evaluated(expression: Expression, terms: Mapping[Monomial, np.ndarray], like: np.ndarray) -> np.ndarray | None:
@@ -107,8 +107,8 @@ def evaluated(expression: Expression, terms: Mapping[Monomial, np.ndarray], like
 def fitted(vector: np.ndarray, columns: list[np.ndarray], tolerance: float) -> np.ndarray | None:
     """The coefficients with which columns add up to a vector, or None."""
     matrix = np.array([column.ravel() for column in columns]).T
-    found, *_ = np.linalg.lstsq(matrix, vector.ravel(), rcond=None)
-    return found if np.abs(matrix @ found - vector.ravel()).max() <= tolerance else None
+    coefficients, *_ = np.linalg.lstsq(matrix, vector.ravel(), rcond=None)
+    return coefficients if np.abs(matrix @ coefficients - vector.ravel()).max() <= tolerance else None
 
 
 def plain_expression(tableau: StepTableau, line: TableauRow) -> Expression:
@@ -159,13 +159,16 @@ def nearest_expression(tableau: StepTableau, line: TableauRow, right: Expression
         candidates.append(dict(zip(start, map(float, weights), strict=True)))
     for number in range(1, MOST_CHANGES + 1):
         for chosen, changes in sums(left, {term: terms[term] for term in choice}, number, tableau.tolerance):
-            found = dict(start)
+            candidate = dict(start)
             for term, change in zip(chosen, changes, strict=True):
-                found[term] = found.get(term, 0.0) + change
-            candidates.append(found)
+                candidate[term] = candidate.get(term, 0.0) + change
+            candidates.append(candidate)
         if number > 1 and len(candidates) > 1:
             break
-    return min((nonzero(found, tableau.tolerance) for found in candidates), key=lambda found: rank(found, right))
+    return min(
+        (nonzero(candidate, tableau.tolerance) for candidate in candidates),
+        key=lambda candidate: rank(candidate, right),
+    )
 
 
 def sums(
@@ -238,12 +241,12 @@ def compared(tableau: StepTableau, method: RightMethod) -> list[ComparedRow]:
     tolerance = max(tableau.tolerance, method.tableau.tolerance)
     rows = []
     for line, right in zip(lines_of(tableau), method.expressions, strict=True):
-        found = nearest_expression(tableau, line, right)
-        wrong = differing(found, right, tolerance)
+        expression = nearest_expression(tableau, line, right)
+        wrong = differing(expression, right, tolerance)
         if wrong or not is_start(line, right):
-            pieces = tuple(written(found, tolerance, wrong, right))
+            pieces = tuple(written(expression, tolerance, wrong, right))
             equation = Equation(line.name, pieces, text_of(right, tolerance) if wrong else "")
-            rows.append(ComparedRow(line.name, found, right, equation))
+            rows.append(ComparedRow(line.name, expression, right, equation))
     return rows
 
 
@@ -254,12 +257,12 @@ def is_start(line: TableauRow, expression: Expression) -> bool:
 
 def equations_of(tableau: StepTableau) -> list[Equation]:
     """The equations of a tableau by itself."""
-    found = []
+    equations = []
     for line in lines_of(tableau):
         expression = short_expression(tableau, line)
         if not is_start(line, expression):
-            found.append(Equation(line.name, tuple(written(expression, tableau.tolerance, set(), {}))))
-    return found
+            equations.append(Equation(line.name, tuple(written(expression, tableau.tolerance, set(), {}))))
+    return equations
 
 
 def text_of(expression: Expression, tolerance: float) -> str:
@@ -333,8 +336,8 @@ def common_denominator(group: Mapping[str, float], tolerance: float) -> int:
 
 def fraction_of(c: float, tolerance: float) -> Fraction | None:
     """A coefficient as a fraction of small numbers, or None."""
-    found = Fraction(c).limit_denominator(LARGEST_DENOMINATOR)
-    return found if abs(float(found) - c) <= max(tolerance, 1e-9) else None
+    fraction = Fraction(c).limit_denominator(LARGEST_DENOMINATOR)
+    return fraction if abs(float(fraction) - c) <= max(tolerance, 1e-9) else None
 
 
 def number_text(c: float, tolerance: float) -> str:

@@ -20,27 +20,27 @@ def explain_step(
     velocity.
     """
     try:
-        found = read_tableau(student, with_velocity=with_velocity)
+        tableau = read_tableau(student, with_velocity=with_velocity)
     except (NoTableau, ValueError, IndexError, TypeError):  # the last three: results of another shape
         return None
     references = [right_method(method, with_velocity=with_velocity) for method in methods]
     best: tuple[list[ComparedRow], RightMethod] | None = None
     for reference in references:
-        for own in (found, pruned(found), merged(pruned(found))):
+        for own in (tableau, pruned(tableau), merged(pruned(tableau))):
             if own.stages == reference.tableau.stages:
                 rows = compared(own, reference)
                 is_likely = reference is references[0] or count_wrong(rows) <= 1
                 if is_likely and (best is None or count_wrong(rows) < count_wrong(best[0])):
                     best = rows, reference
     if best is None:
-        return explain_stages(merged(pruned(found)), references[0].tableau)
+        return explain_stages(merged(pruned(tableau)), references[0].tableau)
     rows, method = best
     if not count_wrong(rows):
         return None
     first = next(row for row in rows if row.is_wrong)
     name, text = mistake_of(first)
-    order = order_sentence(found, method.tableau)
-    return Explanation(name, f"{text} {order}".strip(), tuple(row.equation for row in rows), found.step)
+    order = order_sentence(tableau, method.tableau)
+    return Explanation(name, f"{text} {order}".strip(), tuple(row.equation for row in rows), tableau.step)
 
 
 @functools.cache
@@ -72,19 +72,19 @@ def order_sentence(found: StepTableau, reference: StepTableau) -> str:
 
 def mistake_of(row: ComparedRow) -> tuple[str, str]:
     """The mistake of a wrong row, and the sentence about it."""
-    found, must = said_of(row), f"it must be {row.equation.right}."
+    statement, must = said_of(row), f"it must be {row.equation.right}."
     if is_reversed(row):
-        return "sign reversed", f"{found}; {must}"
+        return "sign reversed", f"{statement}; {must}"
     if is_chained(row):
-        return "stages chained", f"{found}; {must} Each stage starts from x and v, not from the stage before it."
+        return "stages chained", f"{statement}; {must} Each stage starts from x and v, not from the stage before it."
     if (weights := weights_of(row)) is not None:
         return (
             "weights do not add up to one",
-            f"{found}; {must} The weights add up to {round(weights, 9) + 0.0:.4g} instead of 1.",
+            f"{statement}; {must} The weights add up to {round(weights, 9) + 0.0:.4g} instead of 1.",
         )
     if change := step_change(row):
-        return f"h {change}", f"{found}; {must}"
-    return found[0].lower() + found[1:], must[0].upper() + must[1:]
+        return f"h {change}", f"{statement}; {must}"
+    return statement[0].lower() + statement[1:], must[0].upper() + must[1:]
 
 
 def said_of(row: ComparedRow) -> str:

@@ -161,9 +161,9 @@ def with_stages(tableau: StepTableau, stages: list[int]) -> StepTableau:
 def merged(tableau: StepTableau) -> StepTableau:
     """A tableau whose stages at the same state are one."""
     positions, velocities = tableau.positions.copy(), tableau.velocities.copy()
-    kept: list[int] = []
+    unique_stages: list[int] = []
     for stage in range(tableau.stages):
-        for other in kept:
+        for other in unique_stages:
             apart = max(np.abs(part[stage] - part[other]).max() for part in (positions, velocities))
             if apart <= tableau.tolerance:
                 for part in (positions, velocities):
@@ -171,8 +171,8 @@ def merged(tableau: StepTableau) -> StepTableau:
                     part[:, stage + FIRST_ACCELERATION] = 0.0
                 break
         else:
-            kept.append(stage)
-    return with_stages(tableau._replace(positions=positions, velocities=velocities), kept)
+            unique_stages.append(stage)
+    return with_stages(tableau._replace(positions=positions, velocities=velocities), unique_stages)
 
 
 def order_of(tableau: StepTableau) -> int:

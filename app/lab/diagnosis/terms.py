@@ -156,20 +156,20 @@ def explain_terms(
     """
     try:
         results = [right_result(terms, sample) for sample in samples]
-        found = [np.asarray(student(*copied(sample)), np.float64) for sample in samples]
+        student_results = [np.asarray(student(*copied(sample)), np.float64) for sample in samples]
     except (TypeError, ValueError):  # not an array of numbers
         return None
-    if any(a.shape != b.shape or not np.isfinite([a, b]).all() for a, b in zip(found, results, strict=True)):
+    if any(a.shape != b.shape or not np.isfinite([a, b]).all() for a, b in zip(student_results, results, strict=True)):
         return None
-    factor = factor_of_all(found, results)
+    factor = factor_of_all(student_results, results)
     if factor and abs(math.log10(abs(factor))) >= FAR_FROM_ONE:
         text = f"Every result is {factor_text(factor)} times what it must be."
         power = math.copysign(10.0 ** round(math.log10(abs(factor))), factor)
         if not is_simple(factor) and abs(factor - power) <= SMALL_CHANGE * abs(power):
             text = f"Every result is about {power:g} times what it must be: look for a unit, such as km in place of m."
         return Explanation("constant factor", text, (), lambda *sample: factor * right_result(terms, sample))
-    inputs = Inputs(names, samples, results, found)
-    y = inputs.joined(found)
+    inputs = Inputs(names, samples, results, student_results)
+    y = inputs.joined(student_results)
     values = values_of(terms, inputs)
     if np.abs(y - values.right.sum(axis=0)).max() <= TOLERANCE:  # it differs elsewhere
         return None
@@ -279,15 +279,15 @@ def changes_of(unit: Unit, terms: Sequence[Term], values: TermValues, inputs: In
     members = list(unit.members)
     with np.errstate(all="ignore"):
         same, totals = values.right[members].sum(axis=0), values.changed[members].sum(axis=0)
-    found = [ChangedForm("", same, 0.0, lambda right, _: right)]
-    found += [
+    changes = [ChangedForm("", same, 0.0, lambda right, _: right)]
+    changes += [
         ChangedForm(f"is {form.formula}", inputs.vector(form.function), 1.0, form_apply(form), form)
         for form in unit.forms
     ]
     for other, total in zip(values.changes, totals, strict=True):
         if unit.name != WHOLE or other.text.startswith(UNUSED):  # the rest are edits of the reference solution
             apply = rearranged([terms[i].function for i in members], other.change)
-            found.append(ChangedForm(other.text, total, other.cost, apply))
+            changes.append(ChangedForm(other.text, total, other.cost, apply))
         if (i := other.doubles) is not None:
             has = exponent_in(same, total)
             for exponent in EXPONENTS:
@@ -295,14 +295,16 @@ def changes_of(unit: Unit, terms: Sequence[Term], values: TermValues, inputs: In
                     vector = same * inputs.argument(i) ** exponent
                 text = power_text(inputs.names[i], has, exponent, whole=unit.name == WHOLE)
                 likely = abs(exponent) == 1.0 or has == -exponent
-                found.append(ChangedForm(text, vector, 2.0 if likely else 3.5, times_power(i, exponent)))
-    found += [
+                changes.append(ChangedForm(text, vector, 2.0 if likely else 3.5, times_power(i, exponent)))
+    changes += [
         ChangedForm(
             text, np.concatenate([change(block).ravel() for block in inputs.blocks(same)]), cost, of_value(change)
         )
         for text, cost, change in value_changes(same, inputs)
     ]
-    return [change for change in found if np.isfinite(change.vector).all() and np.abs(change.vector).max() > TOLERANCE]
+    return [
+        change for change in changes if np.isfinite(change.vector).all() and np.abs(change.vector).max() > TOLERANCE
+    ]
 
 
 def form_apply(form: Form) -> Apply:
@@ -393,9 +395,9 @@ def argument_changes(inputs: Inputs) -> Iterator[Argument]:
 
 def swapped(arguments: tuple[Any, ...], i: int, j: int) -> tuple[Any, ...]:
     """Arguments with two exchanged."""
-    found = list(arguments)
-    found[i], found[j] = found[j], found[i]
-    return tuple(found)
+    new_arguments = list(arguments)
+    new_arguments[i], new_arguments[j] = new_arguments[j], new_arguments[i]
+    return tuple(new_arguments)
 
 
 def value_changes(same: np.ndarray, inputs: Inputs) -> Iterator[tuple[str, float, Callable[[np.ndarray], np.ndarray]]]:
@@ -422,9 +424,9 @@ def value_changes(same: np.ndarray, inputs: Inputs) -> Iterator[tuple[str, float
 
 def without_row(block: np.ndarray, row: int) -> np.ndarray:
     """Values of points without those of one."""
-    found = block.copy()
-    found[row] = 0.0
-    return found
+    new_block = block.copy()
+    new_block[row] = 0.0
+    return new_block
 
 
 def one_change(
@@ -485,13 +487,13 @@ def two_changes(
                 map(is_simple, factors)
             ):
                 continue
-            found = [
+            findings = [
                 Finding(unit, form, rounded(float(factor)), form.cost + size_cost(unit) + factor_cost(factor))
                 for unit, form, factor in ((one, ones[i], p[i, j]), (other, others[j], q[i, j]))
             ]
-            cost = sum(finding.cost for finding in found)
+            cost = sum(finding.cost for finding in findings)
             if best is None or cost < best[0]:
-                best = cost, found
+                best = cost, findings
     return [] if best is None else [finding for finding in best[1] if not is_right(finding)]
 
 

@@ -30,13 +30,13 @@ def dimension_of(unit: str) -> Dimension | None:
     above, _, below = unit.partition("/")
     total = list(PURE)
     for part, sign in [*((p, 1) for p in above.split()), *((p, -1) for p in below.split())]:
-        found = PART.fullmatch(part)
+        match = PART.fullmatch(part)
         if part == "1":
             continue
-        if found is None or found[1] not in SYMBOLS:
+        if match is None or match[1] not in SYMBOLS:
             return None
-        for i, exponent in enumerate(SYMBOLS[found[1]]):
-            total[i] += sign * exponent * int(found[2] or 1)
+        for i, exponent in enumerate(SYMBOLS[match[1]]):
+            total[i] += sign * exponent * int(match[2] or 1)
     return tuple(total)
 
 
@@ -44,12 +44,12 @@ def units_of(docstring: str, arguments: Sequence[str]) -> dict[str, str]:
     """The units of the arguments of a function that its docstring has."""
     either = "|".join(sorted(arguments, key=len, reverse=True))
     heads = list(re.finditer(rf"(?<!\w)((?:{either})(?:, (?:{either}))*):\s", docstring))
-    found = {}
+    units_by_name = {}
     for head, end in zip(heads, [*(h.start() for h in heads[1:]), len(docstring)], strict=True):
         names, units = head[1].split(", "), BRACKETS.findall(docstring[head.end() : end])
         if units:
-            found.update(zip(names, units if len(units) == len(names) else units[:1] * len(names), strict=True))
-    return found
+            units_by_name.update(zip(names, units if len(units) == len(names) else units[:1] * len(names), strict=True))
+    return units_by_name
 
 
 def rounded(exponents: Iterable[float]) -> Dimension:
@@ -96,8 +96,8 @@ class Clashes(ast.NodeVisitor):
         if isinstance(node, ast.Call):
             return self.of_call(node)
         if isinstance(node, ast.Tuple | ast.List):
-            found = [self.of(part) for part in node.elts]
-            return found[0] if found and len(set(found)) == 1 else None
+            dimensions = [self.of(part) for part in node.elts]
+            return dimensions[0] if dimensions and len(set(dimensions)) == 1 else None
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.expr):
                 self.of(child)
@@ -128,35 +128,35 @@ class Clashes(ast.NodeVisitor):
     def of_call(self, node: ast.Call) -> Dimension | None:
         """The dimension of a function's value."""
         name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-        given = [self.of(part) for part in node.args]
+        dimensions = [self.of(part) for part in node.args]
         own = node.func.value if isinstance(node.func, ast.Attribute) else None
-        if own is not None and getattr(own, "id", "") not in ("np", "numpy", "math", "linalg") and not given:
-            given = [self.of(own)]
-        if not given:
+        if own is not None and getattr(own, "id", "") not in ("np", "numpy", "math", "linalg") and not dimensions:
+            dimensions = [self.of(own)]
+        if not dimensions:
             return None
         if name in PURE_ARGUMENT:
-            if given[0] not in (None, PURE):
+            if dimensions[0] not in (None, PURE):
                 self.count += 1
             return PURE
         if name in POWERS:
-            return None if given[0] is None else rounded(a * POWERS[name] for a in given[0])
-        if name in ("maximum", "minimum", "hypot") or (name in ("max", "min") and len(given) > 1):
-            return self.joined(*given)
-        if name in PRODUCTS and len(given) == 2:
-            one, other = given
+            return None if dimensions[0] is None else rounded(a * POWERS[name] for a in dimensions[0])
+        if name in ("maximum", "minimum", "hypot") or (name in ("max", "min") and len(dimensions) > 1):
+            return self.joined(*dimensions)
+        if name in PRODUCTS and len(dimensions) == 2:
+            one, other = dimensions
             return None if one is None or other is None else tuple(a + b for a, b in zip(one, other, strict=True))
-        return given[0] if name in SAME else None
+        return dimensions[0] if name in SAME else None
 
     def visit_Assign(self, node: ast.Assign) -> None:
-        found = self.of(node.value)
+        dimension = self.of(node.value)
         for target in node.targets:
             if isinstance(target, ast.Name):
-                self.known[target.id] = found
+                self.known[target.id] = dimension
 
     def visit_AugAssign(self, node: ast.AugAssign) -> None:
-        made = self.of(ast.BinOp(node.target, node.op, node.value))  # type: ignore[arg-type]
+        dimension = self.of(ast.BinOp(node.target, node.op, node.value))  # type: ignore[arg-type]
         if isinstance(node.target, ast.Name):
-            self.known[node.target.id] = made
+            self.known[node.target.id] = dimension
 
     def visit_For(self, node: ast.For) -> None:
         for part in ast.walk(node.target):
@@ -179,10 +179,10 @@ class Clashes(ast.NodeVisitor):
 
 def clashes(tree: ast.AST, units: Mapping[str, str]) -> int:
     """Number of places of a function that join quantities of different units. units: of its arguments."""
-    found = Clashes({name: dimension_of(unit) for name, unit in units.items()})
+    visitor = Clashes({name: dimension_of(unit) for name, unit in units.items()})
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                found.visit(statement)
+                visitor.visit(statement)
             break
-    return found.count
+    return visitor.count

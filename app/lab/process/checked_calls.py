@@ -116,7 +116,7 @@ class CheckedCalls:
 
         names, conditions: as of `slips`.
         """
-        self.edits, found = [], []
+        self.edits, outcomes = [], []
         end = time.process_time() + EDIT_TIME
         try:
             source, known = (self.modules.folder / file).read_bytes(), vars(self.modules.loaded[file])
@@ -136,9 +136,9 @@ class CheckedCalls:
                     value = target(*copied(arguments))
             except Exception:
                 continue
-            found.append([len(self.edits), value])
+            outcomes.append([len(self.edits), value])
             self.edits.append((candidate, target))
-        return found
+        return outcomes
 
     def edits_in_words(self, numbers: list[int], units: list[tuple[str, str]], most: int) -> list[Any]:
         """Edits in words, without those that join more than `most` pairs of other units, or that no sentence can name.
@@ -166,11 +166,11 @@ def series(results: Iterator[Any]) -> list[Any]:
     A later call that fails ends the series: the lab sends it again, as the first.
     """
     end = time.process_time() + SERIES_TIME
-    found = [next(results)]
+    values = [next(results)]
     with contextlib.suppress(BaseException):
         while time.process_time() <= end:
-            found.append(next(results))
-    return found
+            values.append(next(results))
+    return values
 
 
 def plain(function: Any) -> Any:
@@ -180,13 +180,13 @@ def plain(function: Any) -> Any:
 
 def solutions(sources: dict[str, str]) -> dict[str, Callable[..., Any]]:
     """Functions from their texts, which use no other name than np; without those that cannot be run."""
-    found = {}
+    functions = {}
     for name, source in sources.items():
         inside: dict[str, Any] = {"np": np}
         with contextlib.suppress(Exception):  # of a teacher's file
             exec(compile(source, f"<{name} of the course>", "exec"), inside)
-            found[name] = inside[name]
-    return found
+            functions[name] = inside[name]
+    return functions
 
 
 @contextlib.contextmanager

@@ -44,29 +44,29 @@ def compile_functions(path: Path, own: Collection[str]) -> tuple[dict[str, Calla
     for name, value in vars(compiled).copy().items():
         if isinstance(value, types.FunctionType) and value.__module__ == compiled.__name__:
             setattr(compiled, name, numba.njit(boundscheck=True)(value))
-    found: dict[str, Callable[..., Any]] = {}
+    functions: dict[str, Callable[..., Any]] = {}
     why = ""
     for name in COMPILED:
         if name not in own or not hasattr(compiled, name):
             continue
         try:
             if agrees(getattr(plain, name), getattr(compiled, name), inputs_of(name)):
-                found[name] = getattr(compiled, name)
+                functions[name] = getattr(compiled, name)
             else:
                 why = f"{name} gives another result when it is compiled"
         except Exception as error:  # whatever numba, or the student's function, does
             why = f"{name}: {first_line(error)}"
-    if "spring_force" in found:
+    if "spring_force" in functions:
         loop = cast(Callable[..., Any], links)
-        spring = found["spring_force"]
+        spring = functions["spring_force"]
 
         def rope(x: Any, v: Any, *numbers: float) -> np.ndarray:
             return loop(x, v, *numbers, spring)
 
         x = np.cumsum(np.ones((4, 3)), axis=0)
         rope(x, x, 1.0, 800.0, 7.0, 1.0, 0.2, 10.0)
-        found[LINKS] = rope
-    return found, why
+        functions[LINKS] = rope
+    return functions, why
 
 
 def load(path: Path, name: str) -> types.ModuleType:
@@ -91,8 +91,8 @@ def agrees(plain: Callable[..., Any], compiled: Callable[..., Any], inputs: Call
         arguments = inputs(rng)
         results = []
         for function in (plain, compiled):
-            given = (a.astype(np.float64) if isinstance(a, np.ndarray) else float(a) for a in arguments)
-            results.append(np.asarray(function(*given), np.float64))
+            values = (a.astype(np.float64) if isinstance(a, np.ndarray) else float(a) for a in arguments)
+            results.append(np.asarray(function(*values), np.float64))
         a, b = results
         if a.shape != b.shape or not np.allclose(a, b, rtol=0.0, atol=TOLERANCE * np.abs(a).max(initial=0.0)):
             return False

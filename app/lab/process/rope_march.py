@@ -174,8 +174,8 @@ class Functions:
 
         compiled: functions to use instead (`compiled.py`).
         """
-        found = {name: compiled.get(name) or getattr(module, name, None) for name in own if name in self.reference}
-        self.own = {name: function for name, function in found.items() if callable(function)}
+        functions = {name: compiled.get(name) or getattr(module, name, None) for name in own if name in self.reference}
+        self.own = {name: function for name, function in functions.items() if callable(function)}
         self.links = compiled.get(LINKS)
         self.step = step
         self.pins = np.zeros(1, int)

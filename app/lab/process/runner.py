@@ -395,9 +395,9 @@ def traced(process: Process, trace: IO[bytes], folder: Path) -> CodePlace | None
     while time.monotonic() < end:
         time.sleep(0.01)
         text = ESCAPED.sub(unescaped, os.pread(trace.fileno(), MAX_TRACE, before).decode("ascii", "replace"))
-        found = place_in(folder, FRAME.findall(text))
-        if found is not None:
-            return found
+        place = place_in(folder, FRAME.findall(text))
+        if place is not None:
+            return place
     return None
 
 

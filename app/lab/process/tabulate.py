@@ -40,8 +40,8 @@ def tabulate(
     table = np.empty((rows, *(shape or ())))
     with np.errstate(all="ignore"):
         for i in range(rows):
-            given = [column[i].copy() if column.ndim > 1 else column[i].item() for column in columns]
-            result = function(*given)
+            row = [column[i].copy() if column.ndim > 1 else column[i].item() for column in columns]
+            result = function(*row)
             value = np.array(float(len(result))) if shape is None else fitting(name, result, shape, function)
             if np.isnan(value).any():
                 raise not_a_number(name, function)

@@ -171,10 +171,10 @@ class Template:
         if not answer:
             self.disconnect()
             raise ConnectionError("the fork server has ended")
-        found = ANSWER.unpack(answer)[0]
-        if request != REAP and found <= 0:
-            raise OSError(-found, os.strerror(-found))
-        return found
+        number = ANSWER.unpack(answer)[0]
+        if request != REAP and number <= 0:
+            raise OSError(-number, os.strerror(-number))
+        return number
 
 
 def can_fork() -> bool:

@@ -111,16 +111,16 @@ def rows(students: Sequence[Student]) -> Html:
 
 def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Html:
     """The mistakes of the class, the most frequent first. names: of the folders."""
-    found = mistakes((names[student.folder], student.results) for student in students)
+    class_mistakes = mistakes((names[student.folder], student.results) for student in students)
     rows = (
         (
             TableCell(fill("<b>{}</b>", len(mistake.folders)), "number"), mistake.place, shortened(mistake.text),
             TableCell(", ".join(mistake.folders), "faint"),
         )
-        for mistake in found
+        for mistake in class_mistakes
     )  # fmt: skip
     nothing = fill('<p class="faint">None.</p>')
-    return fill("<h2>Mistakes now</h2>{}", plain_table(rows, name="mistakes") if found else nothing)
+    return fill("<h2>Mistakes now</h2>{}", plain_table(rows, name="mistakes") if class_mistakes else nothing)
 
 
 def student_row(student: Student, name: str) -> tuple[TableCell, ...]:

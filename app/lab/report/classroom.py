@@ -180,7 +180,7 @@ def broken_at(student: Student, names: Sequence[str]) -> str:
     for verdict in (student.programs.get(name) for name in names):
         file, _, line = verdict.place.partition(":") if verdict is not None else ("", "", "")
         if verdict is not None and verdict.file == file and line and student.saved is not None:
-            found = read_source(student.saved.texts.get(file, b"")).name_at(int(line))
-            if found in student.programs:
-                return found
+            function = read_source(student.saved.texts.get(file, b"")).name_at(int(line))
+            if function in student.programs:
+                return function
     return ""

@@ -84,13 +84,13 @@ def student_section(result: FolderResult, number: int, title: str) -> Html:
     """Everything of one student."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     error = fill('<p class="failed">{}</p>', result.answers.error) if result.answers.error else Html()
-    found = pictures(result)
+    figures = pictures(result)
     tasks = join(
-        task_section(result, entry, f"student-{number}-{entry.task.name}", of_task(found, entry.task.name))
+        task_section(result, entry, f"student-{number}-{entry.task.name}", of_task(figures, entry.task.name))
         for entry in result.tasks
         if entry.state != "not begun"
     )
-    rest, written = of_task(found, ""), code(result)
+    rest, written = of_task(figures, ""), code(result)
     return fill(
         '<section id="student-{0}"><h1>{1}</h1><p>Checked on {2}.</p>'
         "<p>{3} of {4} mandatory tasks are right, and {5} of {6} optional ones.</p>{7}{8}{9}{10}{11}{12}</section>",
@@ -233,7 +233,7 @@ def value_text(answer: Value | None, unit: str) -> str:
 def pictures(result: FolderResult) -> list[tuple[str, Html]]:
     """The student's pictures as parts of the page, each with the task at the start of its name, or ""."""
     names = {entry.task.name for entry in result.tasks}
-    found: list[tuple[str, Html]] = []
+    figures: list[tuple[str, Html]] = []
     for path in sorted((result.folder / PICTURES).glob("*"))[:MAX_PICTURES]:
         data = path.read_bytes() if path.is_file() and path.stat().st_size <= MAX_PICTURE else b""
         kind = next((kind for head, kind in SIGNATURES.items() if data.startswith(head)), None)
@@ -243,8 +243,8 @@ def pictures(result: FolderResult) -> list[tuple[str, Html]]:
             figure = fill(
                 '<figure><img src="{}" alt="{}"><figcaption>{}</figcaption></figure>', source, path.stem, path.name
             )
-            found.append((first[0] if first and first[0] in names else "", figure))
-    return found
+            figures.append((first[0] if first and first[0] in names else "", figure))
+    return figures
 
 
 def of_task(found: Sequence[tuple[str, Html]], task: str) -> Html:

@@ -51,16 +51,18 @@ def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
     step = ROPE.step_of(method)
     reference = reference_poses(step)
     try:
-        found = runner.march(own, step, *start())
+        motion = runner.march(own, step, *start())
     except RunError as error:
         text = NOT_DRAWN if error.kind == BUSY else "Does not run."
         return RopePicture(reference=reference, text=text)
-    inside = int(np.logical_and.accumulate((np.abs(found.x) < FAR).all(axis=(1, 2))).sum())
+    inside = int(np.logical_and.accumulate((np.abs(motion.x) < FAR).all(axis=(1, 2))).sum())
     if inside < POSES:
-        return RopePicture(found.x[:inside], reference, f"Flies apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s.")
-    apart = float(np.linalg.norm(found.x - reference, axis=2).max())
+        return RopePicture(
+            motion.x[:inside], reference, f"Flies apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s."
+        )
+    apart = float(np.linalg.norm(motion.x - reference, axis=2).max())
     return RopePicture(
-        found.x, reference, "Matches the reference." if apart < SAME else f"{metres(apart, 2)} from the reference."
+        motion.x, reference, "Matches the reference." if apart < SAME else f"{metres(apart, 2)} from the reference."
     )
 
 

@@ -52,9 +52,9 @@ class BackgroundCheck(Service):
         """Check functions until each has a verdict, repeating failed checks."""
         open_names: set[str] = set()  # unchecked in this round
         while not self.closed.is_set():
-            found = [(task, saved) for task, saved in self.versions.unchecked() if task.name not in open_names]
-            if found:
-                task, saved = found[0]
+            pairs = [(task, saved) for task, saved in self.versions.unchecked() if task.name not in open_names]
+            if pairs:
+                task, saved = pairs[0]
                 verdict, final = self.verdict(task, saved)
                 if not final:
                     open_names.add(task.name)

@@ -120,17 +120,17 @@ class LiveTables(Service):
         """Compute the tables that are out of date, unless a newer request arrives."""
         if not self.inbox.empty():
             return
-        before, calls, found, is_busy = self.tables, self.calls, {}, False
+        before, calls, tables, is_busy = self.tables, self.calls, {}, False
         for name, call in calls.items():
             try:
                 table = self.table_of(self.uses[name], call)
             except RunError:  # the machine is too busy
                 table, is_busy = before.get(name), True
             if table is not None:
-                found[name] = table
+                tables[name] = table
         self.asked = {name: asked for name, asked in self.asked.items() if name in calls}
-        self.tables = found
-        if found.keys() != before.keys() or any(found[name] is not before[name] for name in found):
+        self.tables = tables
+        if tables.keys() != before.keys() or any(tables[name] is not before[name] for name in tables):
             self.wake()
         if is_busy:
             time.sleep(RETRY_INTERVAL)

@@ -111,10 +111,10 @@ def calls_here(scene: str, begun: Collection[str], live: LiveValues) -> dict[str
     """The calls of the student's begun functions that can be compared in the present scene, by function."""
 
     def number(name: str) -> float:
-        found = live[name]
-        if not isinstance(found, LiveNumber) or not math.isfinite(found.value):
+        live_value = live[name]
+        if not isinstance(live_value, LiveNumber) or not math.isfinite(live_value.value):
             raise LookupError(name)
-        return found.value
+        return live_value.value
 
     calls: dict[str, Call] = {}
     for (of_scene, task), value in VALUES.items():
@@ -122,9 +122,9 @@ def calls_here(scene: str, begun: Collection[str], live: LiveValues) -> dict[str
         if of_scene != scene or task not in begun or (choice and live.get(choice) != needed):
             continue
         try:
-            given, program = value.arguments(number), value.program(number)
+            arguments, program = value.arguments(number), value.program(number)
         except (LookupError, ZeroDivisionError, ValueError):  # the scene has no such thing at present
             continue
-        columns = tuple(np.array([argument], int if value.counts else float) for argument in given)
+        columns = tuple(np.array([argument], int if value.counts else float) for argument in arguments)
         calls[task] = Call(columns, ANY, None if value.counts else (), program)
     return calls

@@ -40,17 +40,17 @@ def stamps(folder: Path, ending: str) -> Stamps | None:
 
     ending: of their names.
     """
-    found: set[tuple[str, int, int, int]] = set()
+    records: set[tuple[str, int, int, int]] = set()
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
                 if entry.name.endswith(ending):
                     with contextlib.suppress(OSError):  # removed meanwhile, or a link to nothing
                         stat = os.stat(entry.path)  # as `entry.stat` gives no inode on Windows
-                        found.add((entry.name, stat.st_ino, stat.st_size, stat.st_mtime_ns))
+                        records.add((entry.name, stat.st_ino, stat.st_size, stat.st_mtime_ns))
     except OSError:  # the folder was removed, or its drive is away
         return None
-    return frozenset(found)
+    return frozenset(records)
 
 
 class FileWatch:
@@ -172,7 +172,7 @@ class Versions:
     def tidy(self) -> None:
         """Remove the copies of versions that no file, use or process has any more."""
         with self.lock:
-            worked = [saved for found in self.worked.values() for saved in found]
+            worked = [saved for versions in self.worked.values() for saved in versions]
             needed = {saved.number for saved in (*self.of_file.values(), *worked)} | {key[1] for key in self.processes}
             needed.add(self.newest.number if self.newest is not None else 0)
             self.failed = {attempt: error for attempt, error in self.failed.items() if attempt[1][1] in needed}
@@ -226,10 +226,14 @@ class Versions:
         newest, order = self.of(use.file), self.worked.get(use, [])[::-1]
         if newest is not None and not use.goes_on:
             order = [newest, *(saved for saved in order if saved is not newest)]
-        found = self.compiled.get(use)
+        compilation = self.compiled.get(use)
         for saved in order:
-            if found is not None and found.saved is saved and (use.lane, saved.number, True) in self.processes:
-                yield saved, found.names
+            if (
+                compilation is not None
+                and compilation.saved is saved
+                and (use.lane, saved.number, True) in self.processes
+            ):
+                yield saved, compilation.names
             yield saved, ()
 
     def attempt(self, use: Use, own: Own, job: Callable[[Runner, frozenset[str]], object]) -> bool:
@@ -288,8 +292,8 @@ class Versions:
 
     def unchecked(self) -> list[tuple[Task, Saved]]:
         """The functions that have no final verdict as they were saved last, in the order of the lab."""
-        found = [(task, self.of_file.get(task.file)) for task in self.tasks if task.check is not None]
-        return [(task, saved) for task, saved in found if saved and self.judged.get(task.name) != saved.number]
+        pairs = [(task, self.of_file.get(task.file)) for task in self.tasks if task.check is not None]
+        return [(task, saved) for task, saved in pairs if saved and self.judged.get(task.name) != saved.number]
 
     def judge(self, task: Task, saved: Saved, verdict: Verdict, *, final: bool) -> None:
         """Take the verdict on a function, unless it has been saved again. final: it is not to be checked again."""
@@ -339,18 +343,18 @@ class Versions:
         """End the processes of a lane before this one by which nothing runs."""
         with self.lock:
             needed = {key, *self.running.values()}
-            idle = [found for found in self.processes if found[0] == key[0] and found < key and found not in needed]
-        for found in idle:
-            self.drop(found)
+            idle = [other for other in self.processes if other[0] == key[0] and other < key and other not in needed]
+        for other in idle:
+            self.drop(other)
 
     def note(self, use: Use, saved: Saved) -> None:
         """Note that a version works; of those before it, those that have not failed are kept."""
         with self.lock:
             failed = {key[1] for other, key, _ in self.failed if other == use and not key[2]}
-            found = {one.number: one for one in (*self.worked.get(use, []), saved)}
+            by_number = {one.number: one for one in (*self.worked.get(use, []), saved)}
             lasting = (saved, self.of_file[use.file])
-            kept = [one for _, one in sorted(found.items()) if one in lasting or one.number not in failed]
-            self.worked[use] = kept[-MAX_WORKED:]
+            survivors = [one for _, one in sorted(by_number.items()) if one in lasting or one.number not in failed]
+            self.worked[use] = survivors[-MAX_WORKED:]
 
     def note_failure(self, use: Use, key: Key, names: frozenset[str], error: RunError) -> None:
         """Note that functions have failed in a process."""
@@ -365,7 +369,7 @@ class Versions:
         """Have the error of a version shown, or none any more, if it is the newest."""
         with self.lock:
             if self.of_file[use.file] is saved:
-                others = {other: found for other, found in self.errors.items() if other != use}
+                others = {other: failure for other, failure in self.errors.items() if other != use}
                 self.errors = others if error is None else {**others, use: error}
 
     def abort(self) -> None:

@@ -154,10 +154,10 @@ class Workbook:
 
     def read_whole(self, folder: Path) -> Answers:
         """The answers in the file. Raises ValueError if it is no TOML, so that a change would lose entries."""
-        found = read_answers(folder)
-        if found.is_broken and (folder / FILE).exists():
-            raise ValueError(f"{found.error}. Nothing is saved until you repair this.")
-        return found
+        answers = read_answers(folder)
+        if answers.is_broken and (folder / FILE).exists():
+            raise ValueError(f"{answers.error}. Nothing is saved until you repair this.")
+        return answers
 
     def store(self, task: str, key: str, value: Value) -> None:
         """Change one value of answers.toml. Raises ValueError if the file cannot be read, OSError for writing."""
@@ -250,5 +250,5 @@ def answer_of(question: Question, text: str) -> Value:
 
 def read_off(question: Question, values: LiveValues) -> str:
     """The live value that answers a question, as it would be typed; "" if the scene has none now."""
-    found = values.get(question.read_off)
-    return f"{found.value:.6g}" if isinstance(found, LiveNumber) and abs(found.value) < 1e300 else ""
+    value = values.get(question.read_off)
+    return f"{value.value:.6g}" if isinstance(value, LiveNumber) and abs(value.value) < 1e300 else ""

@@ -39,10 +39,10 @@ class Pins:
         for cubic, end in zip(cubics, self.ends, strict=True):
             cubic[0] -= end
         rows, cols = self.shape
-        found = []
+        pin_paths = []
         for (i, j), anchor in self.anchors.items():
             along, down = j / (cols - 1), 1.0 - i / (rows - 1)
             c = down * ((1.0 - along) * cubics[0] + along * cubics[1])
             c[0] += anchor
-            found.append(((i, j), PinPath(t, tuple(tuple(row) for row in c.tolist()))))  # type: ignore[arg-type]
-        return tuple(found)
+            pin_paths.append(((i, j), PinPath(t, tuple(tuple(row) for row in c.tolist()))))  # type: ignore[arg-type]
+        return tuple(pin_paths)

@@ -87,8 +87,8 @@ def width_of(params: MooringParams) -> float:
     """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
     if not params.moordyn_file:
         return params.size
-    found = opened(params)
-    return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
+    mooring = opened(params)
+    return min(max(VESSEL_WIDTH * mooring.radius, LEAST_VESSEL * mooring.extent), LARGEST_VESSEL * mooring.extent)
 
 
 def is_round(params: MooringParams) -> bool:
@@ -128,8 +128,8 @@ def shown_points(params: MooringParams) -> NDArray[np.float64]:
     """Points (n, 3) [m] that the first view shows: ends of lines, the body with its mast, the bed under it."""
     wide, x, y = width_of(params), 0.0, 0.0
     if params.moordyn_file:
-        found = opened(params)
-        ends, (x, y, _) = [point.position for point in found.system.points], found.middle
+        mooring = opened(params)
+        ends, (x, y, _) = [point.position for point in mooring.system.points], mooring.middle
     else:
         ends = list(first_places(params).anchors)
         if params.lines == 1 and params.length > params.depth:  # it drifts until its line is nearly straight
@@ -207,10 +207,10 @@ def sections(params: MooringParams) -> tuple[tuple[LineType, float, int], ...]:
 def body_of(params: MooringParams, sea: Waves | None) -> MooredBody:
     """The body, with the forces of waves and the steady force."""
     body = floating.Body(hull_of(params), density=params.density)
-    found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea)
+    moored_body = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea)
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     force = 1e3 * params.steady_force
-    return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
+    return moored_body._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
 
 
 def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | None) -> System:

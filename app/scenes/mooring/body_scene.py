@@ -42,8 +42,8 @@ class MooringScene(LineScene):
 
     def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
         """The fault of a state to start with, or None; see `LineScene`."""
-        found = fault_of(self.params, self.attached.places, self.body.place, stretch)
-        return found or (overload_of(self.params) if failure else None)
+        fault = fault_of(self.params, self.attached.places, self.body.place, stretch)
+        return fault or (overload_of(self.params) if failure else None)
 
     def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion continues."""
@@ -110,11 +110,11 @@ class MooringScene(LineScene):
 
     def driven(self) -> dict[str, NDArray[np.float64]]:
         """Loads of waves and current, and the mouse's pull."""
-        found = super().driven()
+        loads = super().driven()
         if self.grabbed is not None:
             force = np.concatenate((at_most(self.largest_pull, self.wanted_pull(self.grabbed[1])), np.zeros(3)))
-            found["steady"] = self.system.kernel_view(self.step).steady + force
-        return found
+            loads["steady"] = self.system.kernel_view(self.step).steady + force
+        return loads
 
     def wanted_pull(self, target: Vector) -> NDArray[np.float64]:
         """(3,) [N] critically damped, on the body, without a limit. target: [m]."""

@@ -36,8 +36,8 @@ def load_use(tension: float, params: "MooringParams") -> float:
 
 def dragged_tension(now: Any) -> float | None:
     """Largest tension [N] at a fairlead in the time that the statistics leave out; None without such a time."""
-    found = now.readings.dragged
-    return None if math.isnan(found) else found
+    tension = now.readings.dragged
+    return None if math.isnan(tension) else tension
 
 
 def hanging_length(now: Any) -> float:

@@ -50,11 +50,11 @@ class LineRows(NamedTuple):
 
     def level_force(self, points: NDArray[np.float64], tension: NDArray[np.float64]) -> NDArray[np.float64]:
         """Level force (2,) [N] of all lines on the body or vessel. tension: (lines, n) [N]."""
-        found = np.zeros(2)
+        force = np.zeros(2)
         for line, end in self.held:
             way = points[line, 1 if end == 0 else -2] - points[line, end]
-            found += tension[line, end] * way[:2] / max(float(np.linalg.norm(way)), 1e-12)
-        return found
+            force += tension[line, end] * way[:2] / max(float(np.linalg.norm(way)), 1e-12)
+        return force
 
 
 def ends_of(system: System, before: NDArray[np.int64], after: NDArray[np.int64], links: NDArray[np.int64]) -> LineEnds:

@@ -103,19 +103,19 @@ def overload_of(params: MooringParams) -> Fault | None:
 def fault_of_file(file: FileMooring, stretch: NDArray[np.float64]) -> Fault | None:
     """The fault of a mooring from a file, or None. stretch: (lines,) at rest, over the length."""
     points = {point.id: point for point in file.system.points}
-    found: list[tuple[float, str]] = []
+    faults: list[tuple[float, str]] = []
     for line in file.system.lines:
         ends = points[line.start], points[line.end]
         way = math.dist(ends[0].position, ends[1].position)
         if all(end.kind in ("fixed", "coupled") for end in ends) and way > (1.0 + MAX_REST_STRETCH) * line.length:
             said = f"Line {line.id} of {number(line.length)} m cannot reach from point {line.start} to point {line.end}"
-            found.append((way / line.length - 1.0, f"{said}: at least {number(rounded_up(way))} m."))
+            faults.append((way / line.length - 1.0, f"{said}: at least {number(rounded_up(way))} m."))
     longest, line = float(stretch.max()), file.system.lines[int(stretch.argmax())].id
-    if not found and longest > MAX_REST_STRETCH:
-        found.append((longest, f"Line {line} of the file is stretched by {percent(longest)} at rest."))
-    if not found:
+    if not faults and longest > MAX_REST_STRETCH:
+        faults.append((longest, f"Line {line} of the file is stretched by {percent(longest)} at rest."))
+    if not faults:
         return None
-    worst, said = max(found)
+    worst, said = max(faults)
     return Fault(said, said.partition(":")[0].removesuffix("."), "", None, max(worst, longest) > MAX_STRETCH)
 
 

@@ -100,14 +100,14 @@ class RaceCharts:
 
     def without_divergence(self, energies: NDArray[np.float64]) -> NDArray[np.float64]:
         """Energy errors [J] of each rope without the last ones of those that have diverged, which grow without end."""
-        kept = energies.copy()
+        errors = energies.copy()
         for i, entrant in enumerate(self.race.entrants):
-            last = np.flatnonzero(np.isfinite(kept[i]))
+            last = np.flatnonzero(np.isfinite(errors[i]))
             row = last[-1] if entrant.failure and len(last) else 0
-            while row > 0 and abs(kept[i, row]) > max(self.max_energy, MIN_GROWTH * abs(kept[i, row - 1])):
-                kept[i, row] = math.nan
+            while row > 0 and abs(errors[i, row]) > max(self.max_energy, MIN_GROWTH * abs(errors[i, row - 1])):
+                errors[i, row] = math.nan
                 row -= 1
-        return kept
+        return errors
 
     def ends(
         self, table: NDArray[np.float64], drawn: NDArray[np.float64]

@@ -185,8 +185,8 @@ class FloatingBodies:
             layers = column.layers
             if slick > 0.0 and column.kind != "mixed":
                 layers = ((column.oil.density, column.thickness + slick), (column.water.density, math.inf))
-            found = predict(self.hulls[name], self.densities[i], layers, column.water.density)
-            self.known_predictions[key] = found
+            prediction = predict(self.hulls[name], self.densities[i], layers, column.water.density)
+            self.known_predictions[key] = prediction
         return self.known_predictions[key]
 
     def hull_of_each(self) -> list[Hull]:

@@ -160,14 +160,14 @@ class DrawnSurface:
 
     def compared(self, scene: SeaNow) -> dict[str, SurfaceReading]:
         """The radial sum and the square sea side by side, as far as they were timed, each as expected of its waves."""
-        found, s, grid, tile = {}, scene.sum, scene.grid, scene.tile
+        readings, s, grid, tile = {}, scene.sum, scene.grid, scene.tile
         whole = self.spectrum_height(scene.wave_choice, s) if self.costs else 0.0
 
         def error(height: float) -> float:
             return height / whole - 1.0 if whole > 0.0 else 0.0
 
         if "sum" in self.costs:
-            found["sum"] = SurfaceReading(
+            readings["sum"] = SurfaceReading(
                 cost=self.costs["sum"],
                 waves=len(s.waves.kx),
                 shortest=2 * float(grid.spacing[0]),
@@ -178,7 +178,7 @@ class DrawnSurface:
             )
         if "fft" in self.costs and tile is not None:
             height = expected(tile).significant_height
-            found["fft"] = SurfaceReading(
+            readings["fft"] = SurfaceReading(
                 cost=self.costs["fft"],
                 waves=TILE_SIZE * TILE_SIZE // 2,
                 shortest=2 * TILE_LENGTH / TILE_SIZE,
@@ -187,7 +187,7 @@ class DrawnSurface:
                 slope=tile.mean_square_slope,
                 error=error(height),
             )
-        return found
+        return readings
 
     def spectrum_height(self, choice: WaveChoice, sea: RadialSea) -> float:
         """Hs [m] of the whole spectrum after the decay of the sum of waves: an integral over all wavenumbers."""
@@ -197,8 +197,8 @@ class DrawnSurface:
                 self.spectrum_energy = choice, *energy_by_wavenumber(choice.spectrum, choice.conditions)
             _, k, energy = self.spectrum_energy
             some = energy > NEGLIGIBLE_ENERGY * energy.max()
-            kept = np.exp(-2.0 * lost(sea.past, k[some]))
-            self.decayed_height = key, 4.0 * math.sqrt(float((energy[some] * kept).sum()))
+            energy_fraction = np.exp(-2.0 * lost(sea.past, k[some]))
+            self.decayed_height = key, 4.0 * math.sqrt(float((energy[some] * energy_fraction).sum()))
         return self.decayed_height[1]
 
 

@@ -245,16 +245,16 @@ def surfaces_html(snapshot: Snapshot) -> Html:
     readings: RadialReadings = snapshot.readings
     if not readings.surfaces:
         return Html()
-    found = [(title, readings.surfaces[name]) for name, title in SURFACES if name in readings.surfaces]
-    head = (("", ""), *((title, "") for title, _ in found))
+    surfaces = [(title, readings.surfaces[name]) for name, title in SURFACES if name in readings.surfaces]
+    head = (("", ""), *((title, "") for title, _ in surfaces))
     rows = (
-        ("cost [ms]", *(fixed(s.cost * 1e3, 2) for _, s in found)),
-        ("waves", *(number(s.waves) for _, s in found)),
-        ("shortest wave", *(metres(s.shortest, 2) for _, s in found)),
-        ("extent", *(metres(s.extent, 3) for _, s in found)),
-        ("significant height [m]", *(fixed(s.height, 2) for _, s in found)),
-        ("error of the height", *(percent(s.error) for _, s in found)),
-        ("mean square slope", *(number(s.slope) for _, s in found)),
+        ("cost [ms]", *(fixed(s.cost * 1e3, 2) for _, s in surfaces)),
+        ("waves", *(number(s.waves) for _, s in surfaces)),
+        ("shortest wave", *(metres(s.shortest, 2) for _, s in surfaces)),
+        ("extent", *(metres(s.extent, 3) for _, s in surfaces)),
+        ("significant height [m]", *(fixed(s.height, 2) for _, s in surfaces)),
+        ("error of the height", *(percent(s.error) for _, s in surfaces)),
+        ("mean square slope", *(number(s.slope) for _, s in surfaces)),
     )
     return join((
         table(head, rows),

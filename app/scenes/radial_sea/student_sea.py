@@ -67,9 +67,9 @@ class StudentRadialSea(TableUser):
             if box is None:
                 idle[DRAFT] = "let a box float"
             else:
-                found = bodies.prediction(box)
-                arguments = bodies.densities[box], found.height, oil.density, column.thickness, water.density
-                calls[DRAFT] = call_of(*arguments, allowed=(0.0, 3.0 * found.height, "m"))
+                prediction = bodies.prediction(box)
+                arguments = bodies.densities[box], prediction.height, oil.density, column.thickness, water.density
+                calls[DRAFT] = call_of(*arguments, allowed=(0.0, 3.0 * prediction.height, "m"))
         self.ask(calls, idle)
 
     def collect(self) -> set[str]:

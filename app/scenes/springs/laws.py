@@ -24,9 +24,9 @@ def pieces_of_law(names: tuple[str, ...], law: str) -> tuple[str, ...]:
 
 def pieces_on_use(pieces: Callable[[str], Pieces]) -> Pieces:
     """The pieces of all laws but the spring. pieces: those of one law."""
-    found: dict[str, Callable[[], object]] = {}
+    all_pieces: dict[str, Callable[[], object]] = {}
     for law in LAWS:
         if law != SPRING:
             own = pieces(law)
-            found |= zip(pieces_of_law(tuple(own), law), own.values(), strict=True)
-    return found
+            all_pieces |= zip(pieces_of_law(tuple(own), law), own.values(), strict=True)
+    return all_pieces

@@ -154,14 +154,14 @@ class NetScene(abc.ABC, Generic[P]):
         try:
             net = self.take_steps(net, state, steps)
         finally:  # the steps before a cancellation count
-            found = extremes(state.x, state.v)
-            if motion.holds(found):
+            state_extremes = extremes(state.x, state.v)
+            if motion.holds(state_extremes):
                 motion.state = state
         if motion.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
         motion.net = net
-        self.moved(good, steps, found)
+        self.moved(good, steps, state_extremes)
         if self.state.t - self.assessed_at >= self.ASSESSMENT_INTERVAL and self.has_news():
             self.assess_stability()
         self.add_due_row()
@@ -183,10 +183,10 @@ class NetScene(abc.ABC, Generic[P]):
         try:
             for _ in range(steps):
                 motion.take_steps(net, self.state, 1, with_account=self.with_account)
-                found = extremes(self.state.x, self.state.v)
-                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false for NaN too
+                state_extremes = extremes(self.state.x, self.state.v)
+                if state_extremes.reach < MAX_OVERSHOOT * motion.max_reach:  # false for NaN too
                     self.frame()
-                if not motion.holds(found):
+                if not motion.holds(state_extremes):
                     break
         finally:  # it may be cancelled
             motion.state = good

@@ -156,14 +156,14 @@ def divided(segment: Segment) -> list[Segment]:
 def forces_of(net: Net, start: float) -> Forces:
     """Material and surroundings of a net at a time [s]."""
     p, link = net.kernel_view(1.0), net.families[0]
-    given = {name: getattr(p, name) for name in p._fields if name in Forces._fields}
-    given |= {"mass": float(net.mass)}  # of each point: a student's net has equal masses
-    given |= {"stiffness": link.stiffness, "damping": link.damping, "rest_length": link.rest, "gravity": -p.gz}
+    fields = {name: getattr(p, name) for name in p._fields if name in Forces._fields}
+    fields |= {"mass": float(net.mass)}  # of each point: a student's net has equal masses
+    fields |= {"stiffness": link.stiffness, "damping": link.damping, "rest_length": link.rest, "gravity": -p.gz}
     if not p.has_floor:
-        given["floor"] = -math.inf
+        fields["floor"] = -math.inf
     if not p.has_sphere:
-        given["sr"] = 0.0
+        fields["sr"] = 0.0
     if not getattr(p, "has_air", False):  # a rope has none
-        given |= {"air_drag": 0.0, "air_lift": 0.0}
+        fields |= {"air_drag": 0.0, "air_lift": 0.0}
     declared = tuple((OWN[type(one)].name, tuple(map(float, one))) for one in net.forces)
-    return Forces(**given)._replace(epoch=p.epoch - start, declared=declared, began=start)
+    return Forces(**fields)._replace(epoch=p.epoch - start, declared=declared, began=start)

@@ -62,38 +62,38 @@ def readout(snapshot: Snapshot) -> Html:
 
 def heights_table(r: Report, frame: SeaFrame) -> Html:
     """Crest, skewness and kurtosis of a sea that is solved step by step, beside theory; its highest wave, its loss."""
-    found = r.heights
+    heights = r.heights
     hs, hs_expected = (read(OF_REPORT, name, r) for name in ("significant_height", "expected_height"))
-    assert found is not None
+    assert heights is not None
     if not hs > 0.0 or not hs_expected > 0.0:
         return Html("")
-    p, t = frame.params, found.theory
+    p, t = frame.params, heights.theory
     scale = p.amplitude / hs_expected
     measured = table(
         (("", ""), ("as drawn", ""), ("linear", "theory"), ("second order", "Forristall")),
         (
             (
                 fill("crest over significant height {}", info(CREST, "2. Waves")),
-                bold(fixed(p.amplitude * found.crest / hs, 2)),
+                bold(fixed(p.amplitude * heights.crest / hs, 2)),
                 fixed(scale * t.linear, 2),
                 fixed(scale * t.second_order, 2),
             ),
             (
                 fill("skewness {}", info(MOMENTS, "2. Waves")),
-                bold(fixed(found.skewness, 2)),
+                bold(fixed(heights.skewness, 2)),
                 "0",
                 fixed(t.skewness, 2),
             ),
-            ("kurtosis", bold(fixed(found.kurtosis, 2)), "3", fixed(t.kurtosis, 2)),
+            ("kurtosis", bold(fixed(heights.kurtosis, 2)), "3", fixed(t.kurtosis, 2)),
         ),
     )
-    return join((measured, faint(f"Breaking has dissipated {percent(found.lost)} of the energy.")))
+    return join((measured, faint(f"Breaking has dissipated {percent(heights.lost)} of the energy.")))
 
 
 def draupner_table(r: Report, highest: Highest) -> Html:
     """The highest crest since the start beside the record of the Draupner platform."""
     hs, ratio = read(OF_REPORT, "significant_height", r), DRAUPNER.crest / DRAUPNER.height
-    shown = table(
+    comparison = table(
         (("", ""), ("as drawn", ""), ("measured", "1995")),
         (
             ("significant height [m]", bold(fixed(hs, 1)), fixed(DRAUPNER.height, 1)),
@@ -101,7 +101,7 @@ def draupner_table(r: Report, highest: Highest) -> Html:
             ("crest over significant height", bold(fixed(highest.ratio, 2)), fixed(ratio, 2)),
         ),
     )
-    return join((shown, faint("The wave of 1995 took {:g} to {:g} s.".format(*DRAUPNER.period))))
+    return join((comparison, faint("The wave of 1995 took {:g} to {:g} s.".format(*DRAUPNER.period))))
 
 
 def highest_text(h: Highest) -> str:
@@ -154,8 +154,8 @@ def rain_text(rain: "RainReadings") -> str:
     rings = "The grid is too coarse for rings."
     if rain.drops_per_ring:
         rings = f"Each ring stands for {count(rain.drops_per_ring)} drops."
-    shown, falling = (count(read(OF_RAIN, name, rain)) for name in ("drops_shown", "drops_falling"))
-    return f"Rain {number(rain.rate)} mm/h. Shown: {shown} of {falling} falling drops. {rings}"
+    visible_count, falling = (count(read(OF_RAIN, name, rain)) for name in ("drops_shown", "drops_falling"))
+    return f"Rain {number(rain.rate)} mm/h. Shown: {visible_count} of {falling} falling drops. {rings}"
 
 
 def whole_degrees(direction: float) -> str:
@@ -215,7 +215,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     points = solved_points(p)
     cell = p.length / points
     c = spectrum_conditions(p, p.wind_speed, gravity(p))
-    found = {
+    mark_lines = {
         "order": order_line(p, snapshot.frame),
         "wind_speed": wind_line(p),
         "planet": f"gravity {written(QUANTITIES, 'gravity_here', snapshot)}",
@@ -231,13 +231,13 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
         else "no foam",
     }
     if not p.deep:
-        found["depth"] = depth_line(p)
+        mark_lines["depth"] = depth_line(p)
     if isinstance(c, FetchConditions) and not chosen_spectrum(p).is_level(c):
-        found["fetch"] = fetch_line(c)
+        mark_lines["fetch"] = fetch_line(c)
     if isinstance(c, RegularConditions) and snapshot.readings.report is not None:
         length, period = (written(QUANTITIES, name, snapshot) for name in ("wave_length", "expected_period"))
-        found["wave_period"] = f"the nearest wave that fits the tile: {length}, {period}"
-    return found
+        mark_lines["wave_period"] = f"the nearest wave that fits the tile: {length}, {period}"
+    return mark_lines
 
 
 def order_line(params: SquareSeaParams, frame: SeaFrame) -> str:

@@ -43,10 +43,10 @@ def scaled(s: Statistics, factor: float) -> Statistics:
 
 def theory(sea: Sea, t: float, params: SquareSeaParams) -> Theory:
     """Theory of the sea at time t [s] as drawn."""
-    found = expected(sea, t)
+    statistics = expected(sea, t)
     whole = open_sea_height(sea.spectrum, sea.conditions)
-    wave = dominant(sea, t, found.peak_period)
-    return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
+    wave = dominant(sea, t, statistics.peak_period)
+    return Theory(scaled(statistics, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
 
 
 def measure(
@@ -54,10 +54,10 @@ def measure(
 ) -> Statistics:
     """Statistics of heights (n, n) [m]; earlier: those of the frame before, `interval` [s] ago."""
     scale = acting(params).dispersion_scale
-    found = measured(height, sea.length, sea.conditions, earlier, interval * scale)
+    statistics = measured(height, sea.length, sea.conditions, earlier, interval * scale)
     # A scale on the dispersion makes every period shorter by as much.
-    period = found.peak_period / scale if scale > 0.0 else math.nan
-    return scaled(found, params.amplitude)._replace(peak_period=period)
+    period = statistics.peak_period / scale if scale > 0.0 else math.nan
+    return scaled(statistics, params.amplitude)._replace(peak_period=period)
 
 
 def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
@@ -109,8 +109,8 @@ class LiveStatistics:
         if due:
             if self.theory is None or changing:
                 self.theory = theory(sea, t, params)
-            found = None if marching is None else marching.heights(sea, height)
-            self.report = Report(measure(sea, height, self.earlier_height, params, dt), self.theory, dt, found)
+            heights = None if marching is None else marching.heights(sea, height)
+            self.report = Report(measure(sea, height, self.earlier_height, params, dt), self.theory, dt, heights)
             self.measured_at = t
         self.earlier_height = height if params.statistics else None
         return due

@@ -68,18 +68,18 @@ class StudentSea(TableUser):
 
     def conditions(self, p: SquareSeaParams) -> dict[str, Any]:
         """The arguments of `Sea.change`, with the student's in place of the program's."""
-        found: dict[str, Any] = {**conditions(p), "frequency": None, "gravity": self.gravity(p)}
+        arguments: dict[str, Any] = {**conditions(p), "frequency": None, "gravity": self.gravity(p)}
         if SPECTRUM in self.taken:
-            found["spectrum"] = self.spectrum
+            arguments["spectrum"] = self.spectrum
         if DISPERSION in self.taken:
             table = self.taken[DISPERSION]
             k, values = table.call.columns[0], table.values
-            found |= {
+            arguments |= {
                 "frequency": lambda asked: np.interp(asked, k, values, left=0.0),
                 "dispersion_scale": 1.0,
                 "loop_period": None,
             }
-        return found
+        return arguments
 
     def report(self, p: SquareSeaParams) -> None:
         """Report to the panel the functions that run, and the difference of the sea from the program's."""

@@ -91,7 +91,7 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
     rows, cols = foam.shape
     n = height.shape[0]
     lift, inverse = np.float32(scale), np.float32(1.0 / (12.0 * cell))
-    limit, sharpness, kept = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade)
+    limit, sharpness, decay = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade)
     along, across = np.empty(n, np.float32), np.empty(n, np.float32)
     z, X, Y = np.empty(cols, np.float32), np.zeros(cols, np.float32), np.zeros(cols, np.float32)
     hx, hy = np.empty(cols, np.float32), np.empty(cols, np.float32)
@@ -112,7 +112,7 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
             set_differences(dy, p_2, p_1, p, p1, p2, along, across)
             thin(across, stride, yy)
             thin(dy[p], stride, Y)
-        row_foam, row_strain = set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, kept, foam[i])
+        row_foam, row_strain = set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, decay, foam[i])
         set_row(p * cell, stride * cell, X, Y, z, lift, hx, hy, vertices[i], slopes[i])
         foamy += row_foam
         strain += row_strain
@@ -126,13 +126,13 @@ def set_foam(jacobian, scale, stride, threshold, soft, fade, foam):
 
     scale: factor on the height. Returns (fraction of the mesh that is foam, rms of J - 1).
     """
-    limit, sharpness, kept, lift = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade), np.float32(scale)
+    limit, sharpness, decay, lift = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade), np.float32(scale)
     rows, cols = foam.shape
     foamy, strain = 0.0, 0.0
     for i in range(rows):
         for j in range(cols):
             strained = lift * (jacobian[i * stride, j * stride] - ONE)
-            foam[i, j] = max(foam[i, j] * kept, min(max((limit - ONE - strained) * sharpness, ZERO), ONE))
+            foam[i, j] = max(foam[i, j] * decay, min(max((limit - ONE - strained) * sharpness, ZERO), ONE))
             foamy += foam[i, j]
             strain += strained * strained
     return foamy / (rows * cols), np.sqrt(strain / (rows * cols))
@@ -170,10 +170,10 @@ def set_mesh_of(
     D = np.empty((1, 1, 2), np.float32) if fields.displacement is None else fields.displacement
     n, jacobian = len(fields.height), fields.jacobian
     stride = n // len(foam)
-    limit, kept = (threshold, fade) if jacobian is None else (-math.inf, 1.0)
+    limit, decay = (threshold, fade) if jacobian is None else (-math.inf, 1.0)
     cover, deviation = set_mesh(
         fields.height, D[..., 0], D[..., 1], fields.displacement is not None, scale, stride, length / n, limit, soft,
-        kept, vertices, slopes, foam,
+        decay, vertices, slopes, foam,
     )  # fmt: skip
     if jacobian is not None:
         cover, deviation = set_foam(jacobian, scale, stride, threshold, soft, fade, foam)

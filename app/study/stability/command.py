@@ -40,13 +40,13 @@ def measure_maps(*, quick: bool, out: Path | None, workers: int = 0) -> int:
     make_out_folder("--out", out)
     print(tables.machine())
     for name, title, part, details, figure in PARTS:
-        found = part.measure(quick=quick, workers=workers)
-        table = part.rows(found)
+        maps = part.measure(quick=quick, workers=workers)
+        table = part.rows(maps)
         text_tables.print_table(title, table)
         if out is None:
             continue
-        kept = {name: table, f"{name}_curves": details(found)}
-        tables.write_results(kept, functools.partial(named_figure, name, figure, found), out)
+        rows_by_name = {name: table, f"{name}_curves": details(maps)}
+        tables.write_results(rows_by_name, functools.partial(named_figure, name, figure, maps), out)
     if out is not None:
         tables.keep_machine(out)
     return 0

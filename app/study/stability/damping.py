@@ -57,7 +57,7 @@ def measured_step(record: Integrator, net: Net, state: State, theory: float) -> 
     """The step [s] at which a small disturbance of a network at rest begins to grow, 0 or infinity too."""
     if math.isinf(theory):
         tried = [outcome(record, net, h, state.x, 1 << 10) for h in UNLIMITED]
-        return UNLIMITED[[found != STABLE for found in tried].index(True)] if any(tried) else math.inf
+        return UNLIMITED[[verdict != STABLE for verdict in tried].index(True)] if any(tried) else math.inf
     if theory == 0.0:
         h = NEVER_STABLE / max(mode.omega for mode in top_modes(net, state.x))
         return 0.0 if step_growth(record, net, h, state.x) > GROWS else h
@@ -83,8 +83,8 @@ def measure(quick: bool = False, workers: int = 0) -> list[DampingRow]:
     """All integrators and networks. workers: processes, 0 for one on each core."""
     dampings = np.array([0.0, *(np.geomspace(10.0, MAX_DAMPING, 3) if quick else np.geomspace(1.0, MAX_DAMPING, 11))])
     pairs = [(net, name) for net in networks() for name in INTEGRATORS]
-    found = spread(limits, [(*pair, float(b)) for pair in pairs for b in dampings], "step and damping", workers)
-    table = np.array(found).reshape(len(pairs), len(dampings), 2)
+    step_pairs = spread(limits, [(*pair, float(b)) for pair in pairs for b in dampings], "step and damping", workers)
+    table = np.array(step_pairs).reshape(len(pairs), len(dampings), 2)
     return [DampingRow(*pair, dampings, *values.T) for pair, values in zip(pairs, table, strict=True)]
 
 

@@ -56,9 +56,9 @@ def resting(net: Net) -> State:
 
 def measure(quick: bool = False, workers: int = 0) -> list[Drift]:
     """All integrators. workers: processes, 0 for one on each core."""
-    found = spread(course, [(name, QUICK_STEPS if quick else STEPS) for name in INTEGRATORS], "energy", workers)
+    courses = spread(course, [(name, QUICK_STEPS if quick else STEPS) for name in INTEGRATORS], "energy", workers)
     return [
-        Drift(name, record.symplectic, *part) for (name, record), part in zip(INTEGRATORS.items(), found, strict=True)
+        Drift(name, record.symplectic, *part) for (name, record), part in zip(INTEGRATORS.items(), courses, strict=True)
     ]
 
 

@@ -45,24 +45,24 @@ def linear_figure(maps: list[LinearMap]) -> Any:
 
     figure, lowest, grid = panels(len(maps), "x'' + 2 ζ ω x' + ω² x = 0, one step of h after the other")
     shades = None
-    for axes, found in zip(grid, maps, strict=True):
-        extra = np.ma.masked_invalid(np.where(found.rates > 0.0, np.nan, extra_damping(found)))
-        plane = found.steps, found.zetas
+    for axes, linear_map in zip(grid, maps, strict=True):
+        extra = np.ma.masked_invalid(np.where(linear_map.rates > 0.0, np.nan, extra_damping(linear_map)))
+        plane = linear_map.steps, linear_map.zetas
         shades = draw_map(axes, *plane, extra, log=(False, False), cmap="PRGn", vmin=-0.5, vmax=0.5)
-        grows = np.ma.masked_where(~(found.rates > 0.0), np.ones_like(found.rates))
+        grows = np.ma.masked_where(~(linear_map.rates > 0.0), np.ones_like(linear_map.rates))
         draw_map(axes, *plane, grows, log=(False, False), cmap=ListedColormap([GROWTH_COLOUR]))
-        fine = np.linspace(0.0, found.zetas[-1], 400)
-        if not np.isnan(found.measured[1:]).all():
-            limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
+        fine = np.linspace(0.0, linear_map.zetas[-1], 400)
+        if not np.isnan(linear_map.measured[1:]).all():
+            limits = [INTEGRATORS[linear_map.name].limit(float(z)) for z in fine]
             axes.plot(limits, fine, color="black", linewidth=1.4)
-        wrong = np.where(found.rates > 0.0, np.nan, found.errors)
+        wrong = np.where(linear_map.rates > 0.0, np.nan, linear_map.errors)
         if np.isfinite(wrong[1:]).any():
             axes.contour(*plane, wrong, levels=[TOLERANCE], colors="black", linestyles="dashed", linewidths=1.2)
-        every = max(1, len(found.zetas) // 20)
-        shown = np.where(np.isfinite(found.measured), found.measured, np.nan)[::every]
-        axes.plot(shown, found.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
-        axes.set_title(found.name.replace("_", " "), fontsize=10)
-        if not np.isfinite(found.rates[1:]).any():
+        every = max(1, len(linear_map.zetas) // 20)
+        marks = np.where(np.isfinite(linear_map.measured), linear_map.measured, np.nan)[::every]
+        axes.plot(marks, linear_map.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
+        axes.set_title(linear_map.name.replace("_", " "), fontsize=10)
+        if not np.isfinite(linear_map.rates[1:]).any():
             axes.text(2.0, 1.0, "takes no damping", ha="center", color="0.4")
     for axes in lowest:
         axes.set_xlabel("h ω")
@@ -90,12 +90,12 @@ def rope_figure(maps: list[RopeMap]) -> Any:
 
     figure, lowest, grid = panels(len(maps), "The lab's rope of ten points at rest, with a small disturbance")
     colours = ListedColormap(list(OUTCOME_COLOURS.values()))
-    for axes, found in zip(grid, maps, strict=True):
-        plane = found.steps, found.stiffnesses
-        draw_map(axes, *plane, found.outcomes, log=(True, True), cmap=colours, vmin=0, vmax=2)
-        axes.plot(found.theory, found.stiffnesses, color="black", linewidth=1.4)
-        axes.plot(found.accurate, found.stiffnesses, color="black", linewidth=1.2, linestyle="dashed")
-        axes.set_title(found.name.replace("_", " "), fontsize=10)
+    for axes, rope_map in zip(grid, maps, strict=True):
+        plane = rope_map.steps, rope_map.stiffnesses
+        draw_map(axes, *plane, rope_map.outcomes, log=(True, True), cmap=colours, vmin=0, vmax=2)
+        axes.plot(rope_map.theory, rope_map.stiffnesses, color="black", linewidth=1.4)
+        axes.plot(rope_map.accurate, rope_map.stiffnesses, color="black", linewidth=1.2, linestyle="dashed")
+        axes.set_title(rope_map.name.replace("_", " "), fontsize=10)
     for axes in lowest:
         axes.set_xlabel("step h [s]")
     for axes in grid[::COLUMNS]:

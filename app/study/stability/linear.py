@@ -49,10 +49,10 @@ def measure(quick: bool = False, workers: int = 0) -> list[LinearMap]:
     rows, cols, max_steps = (9, 24, 1 << 16) if quick else (41, 100, 1 << 18)
     zetas, steps = np.linspace(0.0, MAX_ZETA, rows), MAX_H_OMEGA * (np.arange(cols) + 0.5) / cols
     tasks = [(name, float(zeta), steps, max_steps) for name in INTEGRATORS for zeta in zetas]
-    found = spread(row, tasks, "h ω and ζ", workers)
+    map_rows = spread(row, tasks, "h ω and ζ", workers)
     maps = []
     for i, (name, record) in enumerate(INTEGRATORS.items()):
-        own = found[i * rows : (i + 1) * rows]
+        own = map_rows[i * rows : (i + 1) * rows]
         theory = np.array([record.limit(float(zeta)) for zeta in zetas])
         maps.append(
             LinearMap(
@@ -110,21 +110,21 @@ def right_up_to(found: LinearMap) -> float:
 def rows(maps: list[LinearMap]) -> list[dict[str, Any]]:
     """The table: disagreement of measurement and theory, for each integrator."""
     table = []
-    for found in maps:
-        wrong, far, again = disagreements(found)
-        apart = deviations(found)
+    for linear_map in maps:
+        wrong, far, again = disagreements(linear_map)
+        apart = deviations(linear_map)
         limited = bool(np.isfinite(apart).any())
         table.append(
             {
-                "integrator": found.name,
-                "cells": int((~np.isnan(found.rates)).sum()),
-                "grow": int((found.rates > 0.0).sum()),
+                "integrator": linear_map.name,
+                "cells": int((~np.isnan(linear_map.rates)).sum()),
+                "grow": int((linear_map.rates > 0.0).sum()),
                 "stable again": again,
                 "disagree": wrong,
                 "beyond 2 %": far,
                 "limit off at most [%]": 100.0 * float(np.nanmax(apart)) if limited else None,
-                "right up to h ω, ζ = 0": right_up_to(found),
-                "at ζ": float(found.zetas[int(np.nanargmax(apart))]) if limited else None,
+                "right up to h ω, ζ = 0": right_up_to(linear_map),
+                "at ζ": float(linear_map.zetas[int(np.nanargmax(apart))]) if limited else None,
             }
         )
     return table

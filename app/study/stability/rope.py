@@ -38,10 +38,10 @@ def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> li
     steps, stiffnesses = np.geomspace(*STEPS, cols), np.geomspace(*STIFFNESSES, rows)
     names = [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
     tasks = [(name, net, float(k), steps, max_steps) for name in names for k in stiffnesses]
-    found = spread(row, tasks, "step and stiffness", workers)
+    map_rows = spread(row, tasks, "step and stiffness", workers)
     maps = []
     for i, name in enumerate(names):
-        own = found[i * rows : (i + 1) * rows]
+        own = map_rows[i * rows : (i + 1) * rows]
         maps.append(RopeMap(name, steps, stiffnesses, *(np.array(column) for column in zip(*own, strict=True))))
     return maps
 

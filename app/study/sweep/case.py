@@ -52,7 +52,7 @@ def failed(message: str) -> Outcome:
 def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Outcome:
     """Run one case and measure it at each of `times` [s]. An exception becomes a failed outcome."""
     kind = scene_named(scene)
-    found: dict[str, list[float]] = {}
+    measures: dict[str, list[float]] = {}
     labels: dict[str, tuple[str, str]] = {}
     end, message, diverged_at = FINISHED, "", math.nan
     row: tuple[float, ...] = ()
@@ -66,12 +66,12 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
                 return failed(note)
             for index, until in enumerate(times):
                 row = advance_to(running, until) or row
-                add_measures(measured(kind, running, row), index, times, found, labels)
+                add_measures(measured(kind, running, row), index, times, measures, labels)
     except DivergenceError as reason:
         end, message, diverged_at = DIVERGED, str(reason), float(running.time)
     except Exception as error:
         end, message = FAILED, f"{type(error).__name__}: {error}"
-    return Outcome(end, message, diverged_at, effort_clock() - start, found, labels)
+    return Outcome(end, message, diverged_at, effort_clock() - start, measures, labels)
 
 
 def add_measures(

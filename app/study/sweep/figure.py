@@ -23,22 +23,22 @@ def draw(dataset: Any) -> Any:
     """A matplotlib figure of `to_dataset`'s dataset."""
     from matplotlib.figure import Figure
 
-    shown = measures_shown(dataset)
-    at_end = dataset[shown].isel(time=-1) if "time" in dataset.dims else dataset[shown]
+    measures = measures_shown(dataset)
+    at_end = dataset[measures].isel(time=-1) if "time" in dataset.dims else dataset[measures]
     swept = list(json.loads(dataset.attrs["identity"])["spec"]["parameters"])
     random = dataset.attrs["design"] == "random"
     ranked = sorted(swept, key=lambda name: rank(dataset[name]))
     across = ranked[:MAX_COLUMNS] if random else [None]
     if not random and len(ranked) > 2:
         across = list(dataset[ranked[2]].values[:MAX_COLUMNS])
-    size = (1.2 + 3.4 * len(across), 0.9 + 2.6 * len(shown))
+    size = (1.2 + 3.4 * len(across), 0.9 + 2.6 * len(measures))
     figure = Figure(figsize=(max(size[0], 5.0), size[1]), layout="constrained")
-    panels = figure.subplots(len(shown), len(across), squeeze=False, sharex="col", sharey="row")
+    panels = figure.subplots(len(measures), len(across), squeeze=False, sharex="col", sharey="row")
     rest = "" if random else ", ".join(f"{name} = {text(dataset[name].values[0])}" for name in ranked[3:])
     when = f"after {dataset.attrs['seconds']:g} s"
     figure.suptitle(f"Sweep of the {dataset.attrs['scene']} scene, {when}" + (f"; {rest}" if rest else ""))
-    for row, name in zip(panels, shown, strict=True):
-        is_top = name == shown[0]
+    for row, name in zip(panels, measures, strict=True):
+        is_top = name == measures[0]
         image = None
         values = at_end[name]
         colours = scale(values.values)

@@ -101,12 +101,12 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
         raise ValueError("parameters: empty; name at least one parameter to sweep")
     fixed = fixed_parameters(scene, content, folder)
     axes: dict[str, Axis] = {}
-    for parameter_name, given in swept.items():
+    for parameter_name, entry in swept.items():
         if parameter_name not in known:
             raise unknown_parameter(parameter_name, known)
         if parameter_name in table(content, "set"):
             raise ValueError(f"{parameter_name}: both in [set] and in [parameters]; name it once")
-        axes[parameter_name] = read_axis(parameter_name, known[parameter_name], given, design)
+        axes[parameter_name] = read_axis(parameter_name, known[parameter_name], entry, design)
     seed = None
     if design == "random":
         if "cases" not in content:
@@ -213,10 +213,10 @@ def check_swept_parameters_matter(spec: Spec, scene: SceneKind[Any, Any, Any]) -
 
 def table(content: dict[str, Any], key: str) -> dict[str, Any]:
     """The TOML table at `key`, or an empty one. Raises ValueError for anything else."""
-    found = content.get(key, {})
-    if not isinstance(found, dict):
-        raise argument_error(key, found, f"a table, [{key}]")
-    return found
+    section = content.get(key, {})
+    if not isinstance(section, dict):
+        raise argument_error(key, section, f"a table, [{key}]")
+    return section
 
 
 def whole(content: dict[str, Any], key: str, default: int, low: int, high: int, of: str = "") -> int:

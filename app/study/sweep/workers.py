@@ -93,9 +93,11 @@ def check_workers(client: Any, address: str) -> None:
         raise argument_error("--scheduler", address, "a scheduler with at least one worker") from None
     except Exception as error:
         raise argument_error("--scheduler", address, f"workers with springtide installed ({one_line(error)})") from None
-    for worker, found in programs.items():
-        if found != program():
-            raise argument_error("--scheduler", address, f"workers that run {program()}; {worker} runs {found}")
+    for worker, worker_program in programs.items():
+        if worker_program != program():
+            raise argument_error(
+                "--scheduler", address, f"workers that run {program()}; {worker} runs {worker_program}"
+            )
 
 
 def one_line(error: Any) -> str:

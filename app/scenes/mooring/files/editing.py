@@ -21,8 +21,8 @@ def title(line: Line) -> str:
 
 def lines_of(params: MooringParams) -> dict[str, Line]:
     """The lines of the file by their titles; none without a file."""
-    found = opened(params).system.lines if params.moordyn_file else ()
-    return {title(line): line for line in found if not OF_ROD.fullmatch(line.type.name)}
+    lines = opened(params).system.lines if params.moordyn_file else ()
+    return {title(line): line for line in lines if not OF_ROD.fullmatch(line.type.name)}
 
 
 def numbers(params: MooringParams) -> dict[str, dict[str, float]]:
@@ -40,14 +40,14 @@ def changed(params: MooringParams, thing: str, values: Mapping[str, float]) -> M
     changes["length", str(line.id)] = values[LENGTH]
     changes["diameter", line.type.name] = values[DIAMETER]
     own = {("length", str(line.id), line.length), ("diameter", line.type.name, line.type.diameter)}
-    found = dataclasses.replace(
+    new_params = dataclasses.replace(
         params,
         file_changes=tuple(
             (what, of, value) for (what, of), value in sorted(changes.items()) if (what, of, value) not in own
         ),
     )
-    opened(found)
-    return found
+    opened(new_params)
+    return new_params
 
 
 def content(params: MooringParams) -> tuple[str, bytes]:

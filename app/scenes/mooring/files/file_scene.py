@@ -118,13 +118,13 @@ class FileScene(LineScene):
 
     def frame(self) -> MooringFrame:
         """Frame to draw."""
-        found, x = super().frame(), self.state.x.T.astype(np.float32)
+        frame, x = super().frame(), self.state.x.T.astype(np.float32)
         anchors = list(self.file.anchors)
         # Of the lines that end at an anchor, any may pull it upwards.
         lifted = np.zeros(len(x), bool)
         np.logical_or.at(lifted, self.rows.before[:, 0], self.tensions.uplift > 0.0)
         movable = [*self.file.vessel, *self.file.others]
-        return found._replace(anchors=x[anchors], uplift=lifted[anchors], fairleads=x[movable])
+        return frame._replace(anchors=x[anchors], uplift=lifted[anchors], fairleads=x[movable])
 
     def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on."""
@@ -136,12 +136,12 @@ class FileScene(LineScene):
         """The state for a file: name -> (array, unit)."""
         tension = np.zeros(sum(line.segments for line in self.system.lines))
         tension[self.rows.links.reshape(-1)] = self.tension.reshape(-1)
-        found: dict[str, tuple[NDArray[Any], str]] = {"vessel": (self.body_place(), "m")}
+        arrays: dict[str, tuple[NDArray[Any], str]] = {"vessel": (self.body_place(), "m")}
         for line in self.system.lines:
-            found[f"x_{line.id}"] = (self.state.x[:, self.system.nodes_of[line.id]].T.copy(), "m")
-            found[f"tension_{line.id}"] = (tension[self.system.links_of[line.id]], "N")
-        found["end_tension"] = (self.end_tension(), "N")
-        return found
+            arrays[f"x_{line.id}"] = (self.state.x[:, self.system.nodes_of[line.id]].T.copy(), "m")
+            arrays[f"tension_{line.id}"] = (tension[self.system.links_of[line.id]], "N")
+        arrays["end_tension"] = (self.end_tension(), "N")
+        return arrays
 
 
 def water_motion(sea: Waves | None, place: Any, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

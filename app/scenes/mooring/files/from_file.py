@@ -117,13 +117,13 @@ def slack_of(system: System) -> tuple[float, float] | None:
     None without such a line.
     """
     points = {point.id: point for point in system.points}
-    found = []
+    slacks = []
     for line in system.lines:
         ends = points[line.start], points[line.end]
         if {end.kind for end in ends} == {"fixed", "coupled"}:
             x, y, z = np.subtract(ends[0].position, ends[1].position)
-            found.append((math.sqrt(max(line.length**2 - z * z, 0.0)) - math.hypot(x, y), line.length))
-    return (min(slack for slack, _ in found), min(length for _, length in found)) if found else None
+            slacks.append((math.sqrt(max(line.length**2 - z * z, 0.0)) - math.hypot(x, y), line.length))
+    return (min(slack for slack, _ in slacks), min(length for _, length in slacks)) if slacks else None
 
 
 def farthest_offset(system: System, extent: float) -> float:

@@ -37,9 +37,9 @@ def part_of_tension(force: float, tension: float) -> str:
 
 def figures_of(snapshot: Snapshot) -> str:
     """The fault of the start, or else the largest tension so far."""
-    found: MooringReadings = snapshot.readings
-    if found.fault is not None and not snapshot.status.halted:  # which says it all
-        return coloured(found.fault.short, WARNING_COLOUR)
+    readings: MooringReadings = snapshot.readings
+    if readings.fault is not None and not snapshot.status.halted:  # which says it all
+        return coloured(readings.fault.short, WARNING_COLOUR)
     most, used = (read(QUANTITIES, name, snapshot) for name in ("largest_tension", "breaking_load_use"))
     use = "" if math.isnan(used) else fill(", {} of breaking load", percent(used))
     return fill("Largest tension: {} kN{}", bold(kilonewtons(most)), use)
@@ -73,10 +73,10 @@ def tension_table(name: str, ends: Sequence[tuple[float, EndStatistics]], params
 
 def tension_tables(snapshot: Snapshot) -> Html:
     """The tensions at the fairleads of all lines, and those at their anchors."""
-    found: MooringReadings = snapshot.readings
+    readings: MooringReadings = snapshot.readings
     params = snapshot.params
-    fairleads = [(one.fairlead, one.at_fairlead) for one in found.lines]
-    anchors = [(one.anchor, one.at_anchor) for one in found.lines]
+    fairleads = [(one.fairlead, one.at_fairlead) for one in readings.lines]
+    anchors = [(one.anchor, one.at_anchor) for one in readings.lines]
     return join((tension_table("Fairlead", fairleads, params), tension_table("Anchor", anchors, params)))
 
 
@@ -95,12 +95,12 @@ def statistics_text(snapshot: Snapshot) -> Html:
 
 def bed_table(snapshot: Snapshot) -> Html:
     """Length on the bed, uplift at the anchors and slack, by line."""
-    found: MooringReadings = snapshot.readings
+    readings: MooringReadings = snapshot.readings
     columns = (("Line", ""), ("Uplift", "kN"), ("largest", "kN"), ("On the bed", "m"), ("Slack", ""))
     rows = [
         (i + 1, part_of_tension(one.uplift, one.fairlead), part_of_tension(one.most_uplift, one.at_fairlead.largest),
          number(one.lying), slack_text(one, snapshot.frame.time))
-        for i, one in enumerate(found.lines)
+        for i, one in enumerate(readings.lines)
     ]  # fmt: skip
     return table(columns, rows)
 
@@ -128,15 +128,15 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
 
 def file_text(params: MooringParams, fault: Fault | None) -> Html:
     """The file of the mooring, its changes, and the parts of it without effect here."""
-    found = opened(params)
-    system = found.system
+    mooring = opened(params)
+    system = mooring.system
     count = fill(
         "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(params.moordyn_file).name),
-        counted(len(system.lines), "line"), counted(len(system.points), "point"), len(found.vessel),
+        counted(len(system.lines), "line"), counted(len(system.points), "point"), len(mooring.vessel),
         metres(system.water.depth),
     )  # fmt: skip
     said = [] if fault is None else [coloured(fault.said, WARNING_COLOUR)]
-    notes = (*said, *found.notes, *raised_points(found))
+    notes = (*said, *mooring.notes, *raised_points(mooring))
     sketch = faint("The vessel is a sketch: the file has no shape, mass or waves for it.")
     return join((count, *(fill("<div>{}</div>", note) for note in notes), sketch))
 
@@ -152,11 +152,11 @@ def readout_of(snapshot: Snapshot) -> Html:
 
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
-    found: MooringReadings = snapshot.readings
-    now = found.stability
+    readings: MooringReadings = snapshot.readings
+    now = readings.stability
     lines = {"time_step": step_mark(now.critical_step, now.accurate_step), **dict.fromkeys(BLAMED, "")}
     is_known = snapshot.params.breaking_load > 0.0
     lines["breaking_load"] = "" if is_known else "unknown: no tension is given as a percentage of it"
-    if found.fault is not None and found.fault.parameter:
-        lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
+    if readings.fault is not None and readings.fault.parameter:
+        lines[readings.fault.parameter] = coloured(readings.fault.said, WARNING_COLOUR)
     return lines

@@ -151,7 +151,11 @@ class Walls:
             + (f", {top - low:.2g} m" if cutaway.has_oil else ""),
             "water": f"water, {number(column.water.density)} kg/m³",
         }
-        shown = {"oil": cutaway.has_oil or column.kind == "mixed", "water": column.kind != "mixed", "draft": is_wet}
+        visibility = {
+            "oil": cutaway.has_oil or column.kind == "mixed",
+            "water": column.kind != "mixed",
+            "draft": is_wet,
+        }
         places = {
             "oil": self.on_wall(OIL_PLACE + 0.25, 0.5 * (top + low) if cutaway.has_oil else 0.3 * cutaway.floor),
             "water": self.on_wall(OIL_PLACE + 0.25, 0.6 * cutaway.floor),
@@ -162,9 +166,9 @@ class Walls:
             below = min(keel, places["oil"][2] - LINE_HEIGHT * self.size) - LINE_HEIGHT * self.size
             places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, below)
         for part, label in self.labels.items():
-            if label.visible != shown[part]:
-                label.visible = shown[part]
-            if not shown[part]:
+            if label.visible != visibility[part]:
+                label.visible = visibility[part]
+            if not visibility[part]:
                 continue
             if label.text != texts[part]:
                 label.text = texts[part]

@@ -65,5 +65,5 @@ class Stains:
 def stain_of(vertices: np.ndarray, faces: np.ndarray, height: float) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (n, 3) [m] and triangles of a hull up to `height` [m] above its lowest point, a little wider."""
     top = float(vertices[:, 2].min()) + height
-    below, kept, _ = slice_faces_plane(vertices, faces, (0.0, 0.0, -1.0), (0.0, 0.0, top))
-    return (below * (SKIN, SKIN, 1.0)).astype(np.float32), kept.astype(np.uint32)
+    below, triangles, _ = slice_faces_plane(vertices, faces, (0.0, 0.0, -1.0), (0.0, 0.0, top))
+    return (below * (SKIN, SKIN, 1.0)).astype(np.float32), triangles.astype(np.uint32)

@@ -23,13 +23,13 @@ HOURS = np.unique(np.concatenate([np.linspace(0.0, 6.0, 25), np.linspace(6.0, MA
 @lru_cache(maxsize=8)
 def budget_chart(spill: Spill, hours: float) -> Chart:
     """Oil budget from 0 to 120 h [%], stacked; the water in the emulsion [%]; a mark at the time shown [h]."""
-    found = weather(spill)
+    weathering = weather(spill)
     start = min(max(hours - 0.5 * NOW_WIDTH, 0.0), MAX_HOURS - NOW_WIDTH)
     end = start + NOW_WIDTH
     times = np.unique(np.concatenate([HOURS[(start > HOURS) | (end < HOURS)], [start, end]]))
     evaporated, dispersed, water = (
-        100.0 * np.interp(times, found.hours, values)
-        for values in (found.evaporated, found.dispersed, found.water_content)
+        100.0 * np.interp(times, weathering.hours, values)
+        for values in (weathering.evaporated, weathering.dispersed, weathering.water_content)
     )
     now = np.where((times >= start) & (times <= end), 100.0, np.nan)
     whole = np.full(len(times), 100.0)

@@ -87,11 +87,11 @@ class RopesDrawing(abc.ABC):
         self.beads.visible = visible
         if visible:
             set_arrays(self.beads, batched_positions=self.points.reshape(-1, 3))
-        grabbed, shown = -1 if grab is None else grab.particle, self.shown_grab
-        if grabbed != shown:
+        grabbed, last_grab = -1 if grab is None else grab.particle, self.shown_grab
+        if grabbed != last_grab:
             self.shown_grab = grabbed
             self.beads.batched_colors = self.with_grabbed(self.bead_colours())
-        return grabbed != shown
+        return grabbed != last_grab
 
     def with_grabbed(self, colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """Colours of the beads, with that of the grabbed one."""

@@ -114,9 +114,10 @@ MISTAKES = (
 def behaviour(student):
     """A drop half way, one that is too high, one below."""
     one = np.ones(3)
-    found = student(np.array([1.0, 5.0, -1.0]), np.array([-1.0, 3.0, -3.0]), 0 * one, 0 * one)
+    fractions = student(np.array([1.0, 5.0, -1.0]), np.array([-1.0, 3.0, -3.0]), 0 * one, 0 * one)
     require(
-        abs(found[0] - 0.5) < 1e-4, "a drop that falls from 1 m above to 1 m below a still surface meets it half way"
+        abs(fractions[0] - 0.5) < 1e-4,
+        "a drop that falls from 1 m above to 1 m below a still surface meets it half way",
     )
-    require(np.isinf(found[1]), "a drop that stays above does not meet the surface")
-    require(np.isinf(found[2]), "a drop that is below already does not meet the surface")
+    require(np.isinf(fractions[1]), "a drop that stays above does not meet the surface")
+    require(np.isinf(fractions[2]), "a drop that is below already does not meet the surface")

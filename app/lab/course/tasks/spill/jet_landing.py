@@ -101,8 +101,8 @@ CURVE = Curve(
 
 def behaviour(student):
     """A drop that is thrown up at 45 degrees from the surface lands at v^2/g."""
-    found = student(np.array([0.0, 0.0, 1e-9]), np.array([5.0, 0.0, 5.0]), 0.0, 10.0)
+    landing = student(np.array([0.0, 0.0, 1e-9]), np.array([5.0, 0.0, 5.0]), 0.0, 10.0)
     require(
-        np.allclose(found, (5.0, 0.0, 0.0), atol=1e-2),
+        np.allclose(landing, (5.0, 0.0, 0.0), atol=1e-2),
         "a drop that leaves at 45 degrees with 7.07 m/s must land after 5 m",
     )

@@ -137,8 +137,8 @@ class Head:
             self.running = running
             self.buttons.options = button_names(running=running)
         status = snapshot.status
-        told, self.told = self.told, (status.state, status.halted, status.outdated, status.run.placed, visitors)
-        return self.told != told
+        last_status, self.told = self.told, (status.state, status.halted, status.outdated, status.run.placed, visitors)
+        return self.told != last_status
 
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
         """Show the state and the figures. busy: [s] that the present tick has taken."""
@@ -164,11 +164,11 @@ def button_names(*, running: bool) -> tuple[str, ...]:
 
 
 def add_scene_chooser(
-    gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
+    gui: viser.GuiApi, scenes: tuple[str, ...], scene: str | None, open_scene: Callable[[str], None]
 ) -> GuiHandle:
     """The list of scenes, each with its name in words."""
     names = {in_words(name): name for name in scenes}
-    chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
+    chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if scene is None else in_words(scene))
 
     @chooser.on_update
     async def _(event: ViserEvent) -> None:

@@ -135,8 +135,8 @@ class Panel:
         rows: new plot rows. busy: [s] that the present tick has taken.
         """
         now = time.monotonic()
-        shown = self.recorder.shown
-        self.plots.update(snapshot, rows, None if shown is None else shown.time)
+        frame = self.recorder.shown
+        self.plots.update(snapshot, rows, None if frame is None else frame.time)
         visitors = len(self.server.get_clients())
         hidden = frozenset[str]() if self.workbook is None else self.workbook.hidden()
         stale = self.head.is_stale(snapshot, visitors) or (self.code is not None and self.code.is_stale)

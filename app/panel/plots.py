@@ -125,15 +125,15 @@ class Plots:
     def send_curves(self, wanted: frozenset[str]) -> None:
         """Send the open charts with columns that the scene has replaced."""
         for name, columns in self.curves.items():
-            kept = self.kept_curves.get(name)
+            earlier_columns = self.kept_curves.get(name)
             last = self.sent_curves.get(name, (None, None))
-            if name not in wanted or (last[0] is columns and last[1] is kept):
+            if name not in wanted or (last[0] is columns and last[1] is earlier_columns):
                 continue
-            self.sent_curves[name] = columns, kept
+            self.sent_curves[name] = columns, earlier_columns
             axes = self.kind.curves[name]
             chart = chart_of(axes, columns)
-            if kept is not None and kept is not columns:
-                chart = with_kept(chart, chart_of(axes, kept))
+            if earlier_columns is not None and earlier_columns is not columns:
+                chart = with_kept(chart, chart_of(axes, earlier_columns))
             self.send(name, chart)
 
     def rows_about(self, moment: float | None) -> list[PlotRow]:
@@ -147,13 +147,15 @@ class Plots:
 
     def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
         """Send the open charts over time whose rows are out of date."""
-        shown, kept = self.rows_about(moment), self.kept
-        ends = (shown[0], shown[-1], kept) if shown else (kept,)
+        present_rows, earlier_rows = self.rows_about(moment), self.kept
+        ends = (present_rows[0], present_rows[-1], earlier_rows) if present_rows else (earlier_rows,)
         behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
         if not behind:
             return
         width = 1 + len(self.kind.series)
-        now, before = (np.array(rows, np.float64).reshape(-1, width) for rows in (shown, beside(shown, kept)))
+        now, before = (
+            np.array(rows, np.float64).reshape(-1, width) for rows in (present_rows, beside(present_rows, earlier_rows))
+        )
         gaps = [gaps_in(one[:, 0]) for one in (now, before)]
         middles = [gap.mean(axis=1) for gap in gaps]  # where the curves have a point without a value
         times = np.unique(np.concatenate((now[:, 0], before[:, 0], *middles)))
@@ -162,7 +164,7 @@ class Plots:
             axes = self.kind.plots[name]
             rows = [1 + self.kind.series.index(one) for one in axes.series]
             lines, columns = axes.lines, [without(gaps[0], times, at_times(times, now, row)) for row in rows]
-            if kept:
+            if earlier_rows:
                 lines = (*lines, *(kept_line(line) for line in lines))
                 columns += [without(gaps[1], times, at_times(times, before, row)) for row in rows]
             lines, columns = with_numbers(lines, columns)
@@ -234,28 +236,28 @@ class Plots:
             )
 
 
-def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
+def beside(rows: Sequence[PlotRow], earlier_rows: Sequence[PlotRow]) -> list[PlotRow]:
     """The rows of an earlier run for the chart of these rows: as many as a chart shows."""
-    if not shown:
-        return list(kept[:SHOWN_ROWS])
-    found = [row for row in kept if row[0] >= shown[0][0]]
-    return [row for i, row in enumerate(found) if i < SHOWN_ROWS or row[0] <= shown[-1][0]]
+    if not rows:
+        return list(earlier_rows[:SHOWN_ROWS])
+    candidates = [row for row in earlier_rows if row[0] >= rows[0][0]]
+    return [row for i, row in enumerate(candidates) if i < SHOWN_ROWS or row[0] <= rows[-1][0]]
 
 
-def with_kept(chart: Chart, kept: Chart) -> Chart:
+def with_kept(chart: Chart, earlier_chart: Chart) -> Chart:
     """A chart with the lines of an earlier one, without its areas and crosses, which would cover the present ones."""
-    here, before = (np.array(one.columns, np.float64).T for one in (chart, kept))
+    here, before = (np.array(one.columns, np.float64).T for one in (chart, earlier_chart))
     places = np.union1d(here[:, 0], before[:, 0])
-    shown = [i for i, line in enumerate(kept.lines) if not (line.fill or line.cross)]
+    indices = [i for i, line in enumerate(earlier_chart.lines) if not (line.fill or line.cross)]
     return Chart(
         chart.first,
-        (*chart.lines, *(kept_line(kept.lines[i]) for i in shown)),
+        (*chart.lines, *(kept_line(earlier_chart.lines[i]) for i in indices)),
         (
             places,
             *(at_times(places, here, 1 + i) for i in range(len(chart.lines))),
-            *(at_times(places, before, 1 + i) for i in shown),
+            *(at_times(places, before, 1 + i) for i in indices),
         ),
-        None if chart.end is None or kept.end is None else max(chart.end, kept.end),
+        None if chart.end is None or earlier_chart.end is None else max(chart.end, earlier_chart.end),
     )
 
 

@@ -33,11 +33,11 @@ def with_ours(
     words: on the cover. styles: style sheets after that of the cover. before: scripts that run before the client.
     entry: the module that starts the others. last: HTML for the end of the page.
     """
-    head, found, body = page.rpartition("<body>")
+    head, body_tag, body = page.rpartition("<body>")
     # viser's client is one long script in the head, as is the recording of a replay. Below the cover they do not
     # delay it.
     start, end = head.find("<script"), head.rfind("</script>")
-    if not found or not 0 <= start < end or "</body>" not in body:
+    if not body_tag or not 0 <= start < end or "</body>" not in body:
         return None
     end += len("</script>")
     client = head[start:end]

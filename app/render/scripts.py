@@ -38,14 +38,14 @@ KEPT = " !\"$&'()*+,/:;=?@[]^`{|}~\\"  # characters that a data: address may hav
 def modules() -> dict[str, str]:
     """Source of each module by its path in `js`."""
     folder = resources.files("app.render") / "js"
-    found = {
+    sources = {
         f"{room}/{file.name}": file.read_text("utf-8")
         for room in ROOMS
         for file in (folder / room).iterdir()
         if file.name.endswith(".js")
     }
     shared = "".join(f"export const {name} = {json.dumps(value)};\n" for name, value in SHARED.items())
-    return {**found, "shared.js": shared}
+    return {**sources, "shared.js": shared}
 
 
 def name_of(path: str) -> str:
@@ -57,14 +57,14 @@ def import_map(sources: dict[str, str]) -> Html:
     """An import map with these modules, whose imports of each other use its names."""
 
     def address(path: str, source: str) -> str:
-        def renamed(found: re.Match[str]) -> str:
-            return f'{found[1]}"{name_of(posixpath.normpath(posixpath.join(posixpath.dirname(path), found[2])))}"'
+        def renamed(match: re.Match[str]) -> str:
+            return f'{match[1]}"{name_of(posixpath.normpath(posixpath.join(posixpath.dirname(path), match[2])))}"'
 
         text = f"{IMPORTED.sub(renamed, source)}\n//# sourceURL={name_of(path)}\n"
         return f"data:text/javascript;charset=utf-8,{quote(text, KEPT)}"
 
-    found = {name_of(path): address(path, source) for path, source in sources.items()}
-    return Html(f'<script type="importmap">{json.dumps({"imports": found})}</script>')
+    addresses = {name_of(path): address(path, source) for path, source in sources.items()}
+    return Html(f'<script type="importmap">{json.dumps({"imports": addresses})}</script>')
 
 
 def tags(entry: str) -> Html:

@@ -166,15 +166,15 @@ class Sky:
 
     def show_stars(self, *, is_clear: bool) -> None:
         """Draw stars over the whole sky at night, unless clouds hide them."""
-        shown = is_clear and self.shown is not None and self.shown[0] == NIGHT
-        if shown and self.stars is None:
+        is_visible = is_clear and self.shown is not None and self.shown[0] == NIGHT
+        if is_visible and self.stars is None:
             points, colours = star_field()
             self.stars = self.server.scene.add_point_cloud(
                 "/stars", points, colours, point_size=STAR_SIZE * STAR_DISTANCE, point_shape="circle",
                 precision="float32", point_shading="flat",
             )  # fmt: skip
-        if self.stars is not None and self.stars.visible != shown:
-            self.stars.visible = shown
+        if self.stars is not None and self.stars.visible != is_visible:
+            self.stars.visible = is_visible
 
 
 def star_field() -> tuple[NDArray[np.float32], NDArray[np.uint8]]:

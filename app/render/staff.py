@@ -63,9 +63,9 @@ class Staff:
         )  # fmt: skip
         scene.add_label("/staff/label", LABEL, position=(*PLACE, HEIGHT), anchor="bottom-center")
 
-    def show(self, shown: bool) -> None:
+    def show(self, visible: bool) -> None:
         """Draw it, or hide it."""
-        self.staff.visible = shown
+        self.staff.visible = visible
 
 
 class WaveStaff:

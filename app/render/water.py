@@ -214,8 +214,8 @@ class DrawnWater:
         return self._plain_meshes[suffix]
 
 
-def raised(points: np.ndarray, shown: np.ndarray) -> np.ndarray:
-    """A copy of a surface of points (n, 3) [m]: just above it where `shown`, (n,), is true, else below."""
+def raised(points: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """A copy of a surface of points (n, 3) [m]: just above it where `mask`, (n,), is true, else below."""
     surface = points.copy()
-    surface[:, 2] += np.where(shown, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
+    surface[:, 2] += np.where(mask, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
     return surface

@@ -56,8 +56,8 @@ class PaneLab(Protocol):
         """Show a scene. Returns False if the request was cancelled before the scene was ready."""
         ...
 
-    def is_given_up(self, asked: int) -> bool:
-        """True if the lab has ended, or another scene was requested after the request `asked`."""
+    def is_given_up(self, number: int) -> bool:
+        """True if the lab has ended, or another scene was requested after request `number`."""
         ...
 
     def visitors(self) -> list[int]:
@@ -130,10 +130,10 @@ class SharedRecord:
         settings = viewer.settings
         with self.writing:
             values = dict(self.values)
-        shown = {name: v for name, (v, of) in values.items() if name in shared_parameters(of, settings.params)}
+        shared_values = {name: v for name, (v, of) in values.items() if name in shared_parameters(of, settings.params)}
         self.told.add(viewer)
         try:
-            settings.set_all(shown)
+            settings.set_all(shared_values)
         finally:
             self.told.discard(viewer)
 
@@ -156,7 +156,7 @@ class ComparedLabs:
 
         resume: the run of the first lab continues from here when the comparison ends.
         """
-        first, asked = self.first, self.first.requests.number
+        first, request = self.first, self.first.requests.number
         self.left = self.kept() if resume else None
         try:
             for number, setup in enumerate(others, 2):
@@ -164,8 +164,8 @@ class ComparedLabs:
                 self.viewers = (*self.viewers, pane)
                 pane.comparison = self
                 params, paused = with_shared(setup.params, first.settings.params), not first.loop.run.running
-                is_there = pane.open(setup.scene, params, paused=paused, given_up=lambda: first.is_given_up(asked))
-                if not is_there or first.is_given_up(asked):
+                is_there = pane.open(setup.scene, params, paused=paused, given_up=lambda: first.is_given_up(request))
+                if not is_there or first.is_given_up(request):
                     self.end()
                     return
         except BaseException:

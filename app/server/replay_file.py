@@ -67,9 +67,9 @@ def thinned(frames: Sequence[RecordedFrame]) -> list[RecordedFrame]:
     span = min(last.wall - frames[0].wall, REPLAY_DURATION)
     interval = span / max(1, min(MAX_FRAMES, int(MAX_RAW_BYTES / max(size, 1))))
     chosen: list[RecordedFrame] = []
-    for kept in (kept for kept in frames if last.wall - kept.wall < span + TOLERANCE):
-        if not chosen or kept.wall - chosen[-1].wall >= interval - TOLERANCE:
-            chosen.append(kept)
+    for frame in (frame for frame in frames if last.wall - frame.wall < span + TOLERANCE):
+        if not chosen or frame.wall - chosen[-1].wall >= interval - TOLERANCE:
+            chosen.append(frame)
     return chosen
 
 
@@ -90,10 +90,10 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
             view.show(chosen[0].frame)
             whole = injector.whole_picture()
             recording = server.get_scene_serializer()
-            for before, kept in itertools.pairwise(chosen):
-                recording.insert_sleep(kept.wall - before.wall)
+            for before, frame in itertools.pairwise(chosen):
+                recording.insert_sleep(frame.wall - before.wall)
                 with server.atomic():
-                    view.show(kept.frame)
+                    view.show(frame.frame)
             server.flush()
             change_buffers(recording, rounded)
             page = recording.as_html()

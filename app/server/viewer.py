@@ -122,7 +122,7 @@ class Viewer:
         with self.changing:
             if self.ended:
                 return False
-            asked = self.requests.number
+            request = self.requests.number
             try:
                 kind = scene_named(name)
                 self.keep_files()
@@ -131,7 +131,7 @@ class Viewer:
                 elif not first_look:
                     self.first_params.setdefault(name, params)
                 ready = self.preparation.compile(
-                    kind, params, covers=not self.is_open, given_up=lambda: given_up() or self.is_given_up(asked)
+                    kind, params, covers=not self.is_open, given_up=lambda: given_up() or self.is_given_up(request)
                 )
                 if not ready or self.ended:
                     return False
@@ -147,9 +147,9 @@ class Viewer:
         if self.current is not None and (first := self.first_params.get(name := self.current.settings.kind.name)):
             self.first_params[name] = with_fields_of(self.current.settings.params, first)
 
-    def is_given_up(self, asked: int) -> bool:
-        """True if the lab has ended, or another scene was requested after the request `asked`, while one is open."""
-        return self.ended or (self.is_open and self.requests.is_newer(asked))
+    def is_given_up(self, number: int) -> bool:
+        """True if the lab has ended, or another scene was requested after request `number`, while one is open."""
+        return self.ended or (self.is_open and self.requests.is_newer(number))
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool, earlier: EarlierSettings | None = None) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""

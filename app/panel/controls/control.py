@@ -89,8 +89,8 @@ class Control:
         label, hint = title(name, parameter), hint_of(name, parameter)
         value = self.value
         if parameter.choices:
-            shown = parameter.title_of(str(value))
-            self.field: GuiHandle = gui.add_dropdown(label, parameter.choice_titles, initial_value=shown, hint=hint)
+            choice = parameter.title_of(str(value))
+            self.field: GuiHandle = gui.add_dropdown(label, parameter.choice_titles, initial_value=choice, hint=hint)
         elif parameter.kind is bool:
             self.field = gui.add_checkbox(label, initial_value=bool(value), hint=hint)
         else:
@@ -204,9 +204,11 @@ class Control:
                     return
                 with self.folder:
                     self.line = self.gui.add_html("", order=self.order + 0.5, visible=self.visible)
-            said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
+            refusal = (
+                fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
+            )
             line = f'<div class="springtide-line">{self.text}</div>' if self.text else ""
-            self.line.content = str(said) + line
+            self.line.content = str(refusal) + line
 
 
 def float_or_int(value: Value) -> float:

@@ -45,9 +45,9 @@ class Controls(Mapping[str, Control]):
     def show_again(self, names: Sequence[str], folder: viser.GuiFolderHandle) -> None:
         """Show these parameters a second time, in a folder, replacing those shown there before."""
         with folder:
-            made = [self.make(folder, name) for name in names]
+            controls = [self.make(folder, name) for name in names]
         with self.lock:
-            before, self.again = self.again, made
+            before, self.again = self.again, controls
             for control in before:
                 control.remove()
         self.show(self.hidden)
@@ -63,6 +63,6 @@ class Controls(Mapping[str, Control]):
             for control in (*self.own.values(), *self.again):
                 control.show_value()
                 control.show(control.name not in hidden)
-        shown = {self.parameters[name].group for name in self.own if name not in hidden}
+        groups = {self.parameters[name].group for name in self.own if name not in hidden}
         for group, folder in self.folders.items():
-            folder.visible = group in shown
+            folder.visible = group in groups

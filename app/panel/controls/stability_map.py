@@ -153,9 +153,9 @@ class StabilityMapPanel:
     def draw(self) -> None:
         """Show the finished rows of the map, with a dot at the present parameters; on the viewer thread."""
         axes = self.axes
-        found = picture(axes, self.rows, self.read()) if axes is not None else ""
+        image = picture(axes, self.rows, self.read()) if axes is not None else ""
         problem = note(self.problem) if self.problem else ""
-        self.html.content = found + problem
+        self.html.content = image + problem
 
     def on_press(self, message: Message[list[object]]) -> None:
         """Go to the place of a press."""

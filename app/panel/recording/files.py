@@ -110,13 +110,13 @@ class Files:
 
     def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the shown moment as one page. Raises ValueError if nothing was recorded."""
-        shown = self.recorder.shown
-        frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
+        last = self.recorder.shown
+        frames = [frame for frame in self.recorder.kept() if last is None or frame.time <= last.time]
         page = self.make_replay(self.settings.kind, frames, self.plots.plotted())
         return file_name(self.settings, ".html"), page.encode()
 
 
 def file_name(settings: SceneSettings, end: str, name: str = "") -> str:
     """Name of a file of the set-up. end: its extension and the word before it. name: of the set-up, if any."""
-    said = name or f"{settings.kind.name} {settings.other_name or settings.loaded}"
-    return "springtide-" + "-".join(re.findall(r"[\w.]+", said.removeprefix("Mine: "))).lower() + end
+    words = name or f"{settings.kind.name} {settings.other_name or settings.loaded}"
+    return "springtide-" + "-".join(re.findall(r"[\w.]+", words.removeprefix("Mine: "))).lower() + end

@@ -46,11 +46,11 @@ def arrays_of_frame(frame: object) -> dict[int, int]:
     """Identity -> bytes of the arrays in a frame and the tuples in it; other objects are the scene's own."""
     if isinstance(frame, np.ndarray):
         return arrays_in(cast(object, frame))
-    found: dict[int, int] = {}
+    sizes: dict[int, int] = {}
     if isinstance(frame, tuple):
         for part in cast(tuple[object, ...], frame):
-            found.update(arrays_of_frame(part))
-    return found
+            sizes.update(arrays_of_frame(part))
+    return sizes
 
 
 class FrameMemory:
@@ -143,9 +143,9 @@ class Recorder:
             if self.memory.bytes > MAX_BYTES:
                 self.make_room()
 
-    def forget(self, kept: RecordedFrame) -> None:
+    def forget(self, frame: RecordedFrame) -> None:
         """Release a frame that is no longer among the others."""
-        self.memory.remove(kept.arrays)
+        self.memory.remove(frame.arrays)
 
     def make_room(self) -> None:
         """Remove frames until there is memory for those of some seconds."""
@@ -161,15 +161,15 @@ class Recorder:
         """Remove frames that follow another one sooner than `spacing` times their age."""
         newest, last, last_state = self.frames[-1].time, -math.inf, -math.inf
         frames: collections.deque[RecordedFrame] = collections.deque()
-        for kept in self.frames:
-            least = spacing * (newest - kept.time)
+        for frame in self.frames:
+            least = spacing * (newest - frame.time)
             wait = least if least * MAX_RATE <= 1.0 else least + STATE_INTERVAL  # for one with a state
-            if kept.time - last >= wait or (kept.state is not None and kept.time - last_state >= least):
-                frames.append(kept)
-                last = kept.time
-                last_state = last if kept.state is not None else last_state
+            if frame.time - last >= wait or (frame.state is not None and frame.time - last_state >= least):
+                frames.append(frame)
+                last = frame.time
+                last_state = last if frame.state is not None else last_state
             else:
-                self.forget(kept)
+                self.forget(frame)
         self.frames = frames
 
     def span(self) -> tuple[float, float]:
@@ -181,7 +181,7 @@ class Recorder:
         """Show the last frame at or before a simulated time [s]."""
         with self.lock:
             if self.frames:
-                times = [kept.time for kept in self.frames]
+                times = [frame.time for frame in self.frames]
                 self.position = max(0, bisect.bisect_right(times, time + 1e-9) - 1)
                 self.playing, self.played = False, 0.0
 
@@ -240,7 +240,7 @@ class Recorder:
             if self.position is None:
                 return None
             before = (self.frames[i] for i in range(self.position, -1, -1))
-            return next((kept for kept in before if kept.state is not None), None)
+            return next((frame for frame in before if frame.state is not None), None)
 
     def kept(self) -> tuple[RecordedFrame, ...]:
         """All frames, the oldest first."""

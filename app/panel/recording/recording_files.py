@@ -50,8 +50,8 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
     share = max(1, int(np.ceil(size * (len(frames) - start) / MAX_ARRAYS)))
     chosen = frames[start::share]
     columns: dict[str, list[NDArray[np.generic]]] = {name: [] for name in form}
-    for kept in chosen:
-        for name, array in arrays_of(kept.frame):
+    for frame in chosen:
+        for name, array in arrays_of(frame.frame):
             if name in columns:
                 columns[name].append(array)
     about = {
@@ -61,7 +61,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
     }
     content = io.BytesIO()
     arrays = {name: np.stack(column) for name, column in columns.items()}
-    times = np.array([kept.time for kept in chosen])
+    times = np.array([frame.time for frame in chosen])
     np.savez_compressed(content, t=times, about=np.array(json.dumps(about)), **arrays)  # pyright: ignore
     return content.getvalue()
 
@@ -82,9 +82,9 @@ def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
     """The part of a chart over time from `start` to `end` [s]; any other chart unchanged."""
     if not isinstance(chart, Chart) or chart.first != TIME:
         return chart
-    shown = (chart.columns[0] >= start) & (chart.columns[0] <= end)
-    numbers = chart.numbers and tuple(column if column is None else column[shown] for column in chart.numbers)
-    return chart._replace(columns=tuple(column[shown] for column in chart.columns), end=None, numbers=numbers)
+    mask = (chart.columns[0] >= start) & (chart.columns[0] <= end)
+    numbers = chart.numbers and tuple(column if column is None else column[mask] for column in chart.numbers)
+    return chart._replace(columns=tuple(column[mask] for column in chart.columns), end=None, numbers=numbers)
 
 
 def plots_csv(kind: AnyKind, plotted: Plotted) -> str:

@@ -53,7 +53,7 @@ class Tables(HTMLParser):
 
 def plain(cell: str) -> str:
     """A cell with its numbers as programs read them; "" for no number."""
-    text = POWER.sub(lambda found: "e" + found[1].translate(DIGITS), cell.replace(THOUSANDS, ""))
+    text = POWER.sub(lambda match: "e" + match[1].translate(DIGITS), cell.replace(THOUSANDS, ""))
     return "" if text == NO_NUMBER else text.replace("−", "-").replace("\u00a0", " ")
 
 
@@ -69,10 +69,10 @@ def tables_csv(text: str) -> str:
     reader.close()
     if not reader.tables:
         raise ValueError(NO_TABLE)
-    found = io.StringIO()
-    writer = csv.writer(found, lineterminator="\n")
+    content = io.StringIO()
+    writer = csv.writer(content, lineterminator="\n")
     for number, rows in enumerate(reader.tables):
         if number > 0:
             writer.writerow(())
         writer.writerows(rows)
-    return found.getvalue()
+    return content.getvalue()

@@ -70,9 +70,9 @@ class Timeline:
         """Continue from a time [s] of the recording, or from the last state before it; without one, look back at it."""
         self.hold()
         self.recorder.show_time(moment)
-        kept = self.recorder.resumable()
-        if kept is not None and kept.state is not None:
-            self.settings.resume(kept.params, kept.state)
+        frame = self.recorder.resumable()
+        if frame is not None and frame.state is not None:
+            self.settings.resume(frame.params, frame.state)
 
     def set_rate(self, rate: float) -> None:
         """Set the speed of playing the recording."""
@@ -87,8 +87,8 @@ class Timeline:
         """Update the pages. running: the lab runs."""
         self.is_running = running
         now = time.monotonic()
-        recorder, shown = self.recorder, self.recorder.shown
-        present = None if shown is None else shown.time, recorder.playing, recorder.line.number
+        recorder, frame = self.recorder, self.recorder.shown
+        present = None if frame is None else frame.time, recorder.playing, recorder.line.number
         if present == self.told and now - self.span_at < SPAN_INTERVAL:
             return
         self.span_at, self.told = now, present
@@ -97,9 +97,9 @@ class Timeline:
             "run": recorder.line.number,
             "low": round(low, 3),
             "high": round(high, 3),
-            "shown": None if shown is None else round(shown.time, 3),
+            "shown": None if frame is None else round(frame.time, 3),
             "playing": recorder.playing,
-            "resumable": shown is not None and recorder.resumable() is not None,
+            "resumable": frame is not None and recorder.resumable() is not None,
             "rate": recorder.rate,
             "rates": RATES,
             "loops": recorder.loops,

@@ -287,8 +287,8 @@ def not_in_link(params: BaseParams) -> Html:
     """The files of these parameters that a link does not name; nothing without any."""
     files = added_files(params).values()
     what = " and its changes" if getattr(params, CHANGES, ()) else ""
-    said = [faint(f"A link does not name {file}{what}; a saved set-up does.") for file in files]
-    return lines(said) if said else Html()
+    sentences = [faint(f"A link does not name {file}{what}; a saved set-up does.") for file in files]
+    return lines(sentences) if sentences else Html()
 
 
 def camera_of(client: viser.ClientHandle) -> Camera:

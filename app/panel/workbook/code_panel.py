@@ -97,8 +97,8 @@ class CodePanel:
         if calls.keys() != self.calls.keys() or not all(call.same(self.calls[name]) for name, call in calls.items()):
             self.calls = calls
             session.values.want(calls)
-        said = code_lines(self.state, self.net.report, tables_of(session), self.scene)
-        self.text.content = note(lines([said, function_lines(session, self.scene)]))
+        state_text = code_lines(self.state, self.net.report, tables_of(session), self.scene)
+        self.text.content = note(lines([state_text, function_lines(session, self.scene)]))
         self.choice.visible = bool(session.tables.tables)
         mistake = mistake_of(session, session.begun)
         return headline(self.state, self.net.report, tables_of(session), self.scene, mistake)
@@ -129,8 +129,8 @@ def busy_text(state: CodeState) -> Html:
 def mistake_of(session: Session, begun: frozenset[str]) -> str:
     """The first mistake of a function under way, in the order of the lab; "" if none is known."""
     verdicts = ((task.name, session.versions.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
-    found = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
-    return "" if found is None else f"{found[0]} is wrong: {found[1].mistake or found[1].sentence}"
+    mistake = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
+    return "" if mistake is None else f"{mistake[0]} is wrong: {mistake[1].mistake or mistake[1].sentence}"
 
 
 def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str, mistake: str = "") -> Html:
@@ -158,30 +158,30 @@ def headline(state: CodeState, report: StudentReport, tables: TableReport, scene
 def code_lines(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
     """The saved version, its error, and the part of the scene that it moves."""
     runs = bool(report.version or tables.running)
-    said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=runs or tables.off)]
+    texts: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=runs or tables.off)]
     if state.error is not None and not is_busy(state):
         place = bold(place_of(state.error))
-        said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
+        texts.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
         if runs:
-            said.append(fill("The last version that worked stays in use."))
+            texts.append(fill("The last version that worked stays in use."))
     if report.version:
-        said += net_texts(state, report, scene)
-    return lines([*said, *sea_texts(tables)])
+        texts += net_texts(state, report, scene)
+    return lines([*texts, *sea_texts(tables)])
 
 
 def sea_texts(tables: TableReport) -> list[Html]:
     """The functions that move a sea, those that it does not use, and the difference from the program's sea."""
-    said: list[Html] = []
+    texts: list[Html] = []
     if tables.off:
-        said.append(fill("The sea uses the built-in functions."))
+        texts.append(fill("The sea uses the built-in functions."))
     if tables.running:
         what = join((fill("{} ({})", bold(name), moved) for name, moved in tables.running.items()), ", ")
-        said.append(fill("The sea uses your {}.", what))
+        texts.append(fill("The sea uses your {}.", what))
     for name, own, program, unit in tables.differences:
         value, reference = (f"{number(x, 3)} {unit}" if x == x else "…" for x in (own, program))
-        said.append(fill("{} {} (program {})", name, bold(value), reference))
-    said += [faint(f"To use your {name} here: {why}.") for name, why in tables.idle.items()]
-    return said
+        texts.append(fill("{} {} (program {})", name, bold(value), reference))
+    texts += [faint(f"To use your {name} here: {why}.") for name, why in tables.idle.items()]
+    return texts
 
 
 def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
@@ -202,41 +202,41 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     used = (CLOTH if scene == "cloth" else ROPE).in_use(report.own, report.method, sphere=report.sphere)
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
-    said = [fill("Your {} is driven by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
+    texts = [fill("Your {} is driven by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
     if not own:
-        said = [fill("Your {} has not moved yet.", scene)]
+        texts = [fill("Your {} has not moved yet.", scene)]
     if report.seconds:
         pace = report.step / report.seconds
         speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
-        kept = [name for name in report.compiled if used.get(name)]
-        rest = [name for name, is_own in used.items() if is_own and name not in kept]
-        how = f"{', '.join(kept)} compiled by numba" if kept else "Plain Python"
-        how += f", {', '.join(rest)} plain Python" if kept and rest else ""
-        said.append(fill("{}: {}.", how, speed if pace > 1.0 else coloured(speed, WARNING_COLOUR)))
-        if state.not_compiled and not kept:
+        compiled_names = [name for name in report.compiled if used.get(name)]
+        rest = [name for name, is_own in used.items() if is_own and name not in compiled_names]
+        how = f"{', '.join(compiled_names)} compiled by numba" if compiled_names else "Plain Python"
+        how += f", {', '.join(rest)} plain Python" if compiled_names and rest else ""
+        texts.append(fill("{}: {}.", how, speed if pace > 1.0 else coloured(speed, WARNING_COLOUR)))
+        if state.not_compiled and not compiled_names:
             needs_scipy = "scipy" in state.not_compiled.lower()
-            said.append(faint(NEEDS_SCIPY if needs_scipy else f"Not compiled: {state.not_compiled}"))
+            texts.append(faint(NEEDS_SCIPY if needs_scipy else f"Not compiled: {state.not_compiled}"))
     if report.left_at == report.left_at:
-        said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
+        texts.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
         apart = "Less than 1 µm" if report.difference < SAME else metres(report.difference)
-        said.append(fill("{} from the program's {}.", bold(apart), TRANSLUCENT[scene]))
-        said.append(difference_chart(report, scene))
+        texts.append(fill("{} from the program's {}.", bold(apart), TRANSLUCENT[scene]))
+        texts.append(difference_chart(report, scene))
         if report.difference > (MAX_EXPLAINED if report.unlike else SAME):
-            said.append(coloured(BEYOND, WARNING_COLOUR))
+            texts.append(coloured(BEYOND, WARNING_COLOUR))
     elif report.restarts and own:
-        said.append(fill("It has not moved far enough since its restart to be compared."))
+        texts.append(fill("It has not moved far enough since its restart to be compared."))
     if report.grid != (0, 0):
         rows, cols = report.grid
         what = "Rows and columns: {} × {} points, without pleats, self-collision and mouse, as plain Python is slow."
-        said.append(fill(what, rows, cols))
+        texts.append(fill(what, rows, cols))
     if not report.difference < ROUNDING:
-        said += [faint(line) for line in report.unlike]
-    said += [faint(line) for line in report.left_out]
+        texts += [faint(line) for line in report.unlike]
+    texts += [faint(line) for line in report.left_out]
     if report.restarts:
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
-        said.append(faint(f"It fell behind {often}, so it was restarted from the built-in {scene}."))
-    return said
+        texts.append(faint(f"It fell behind {often}, so it was restarted from the built-in {scene}."))
+    return texts
 
 
 def difference_chart(report: StudentReport, thing: str) -> Html:

@@ -63,10 +63,10 @@ class SnapshotValues(Mapping[str, LiveValue]):
         """The value of this name. Raises KeyError if the scene does not have it now."""
         if name not in self.found:
             self.found[name] = self.computed(name)
-        found = self.found[name]
-        if found is None:
+        value = self.found[name]
+        if value is None:
             raise KeyError(name)
-        return found
+        return value
 
     def computed(self, name: str) -> LiveNumber | None:
         """The quantity of this name, None if the scene does not have it now."""
@@ -96,11 +96,11 @@ class QuestionWidgets:
         gui = guide.gui
         self.widgets: list[GuiHandle] = []
         label = label_of(question)
-        shown = self.kept_text()
+        content = self.kept_text()
         if question.kind == "choice":
-            self.field: GuiHandle = gui.add_dropdown(label, (UNANSWERED, *question.choices), initial_value=shown)
+            self.field: GuiHandle = gui.add_dropdown(label, (UNANSWERED, *question.choices), initial_value=content)
         else:
-            self.field = gui.add_text(label, shown, multiline=question.kind == "text")
+            self.field = gui.add_text(label, content, multiline=question.kind == "text")
         self.field.on_update(self.on_field)
         self.widgets.append(self.field)
         self.line = gui.add_html("")
@@ -117,8 +117,8 @@ class QuestionWidgets:
         answer = self.workbook.answers.of(self.task, self.question)
         unread = self.workbook.answers.unread_of(self.task, self.question)
         if self.question.kind == "choice":
-            found = chosen(self.question, answer) if isinstance(answer, str) else ""
-            return found if found in self.question.choices else UNANSWERED
+            choice = chosen(self.question, answer) if isinstance(answer, str) else ""
+            return choice if choice in self.question.choices else UNANSWERED
         if unread is not None:
             return unread.text
         return "" if answer is None else answer if isinstance(answer, str) else f"{answer:.10g}"
@@ -160,24 +160,24 @@ class QuestionWidgets:
             self.store(self.refused)
         verdict = self.workbook.verdict(self.task, self.question)
         self.field.disabled = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
-        shown = self.kept_text()
-        if self.typed is self.flushed and not self.refusal and self.field.value.strip() != shown:
-            self.field.value = shown
+        content = self.kept_text()
+        if self.typed is self.flushed and not self.refusal and self.field.value.strip() != content:
+            self.field.value = content
         if self.reader is not None:
             self.reader.visible = bool(read_off(self.question, self.guide.values))
-        said = Html()
+        feedback = Html()
         if self.refusal:
-            said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
+            feedback = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
         elif verdict.state in STATE_WORDS and (verdict.state != "given" or self.question.kind == "text"):
             text = verdict.text
             if verdict.state == "given":
                 text = self.comparison()
-            said = fill(
+            feedback = fill(
                 '<div class="springtide-line springtide-verdict">{} {}</div>',
                 coloured(STATE_WORDS[verdict.state], STATE_COLOURS[verdict.state]),
                 text,
             )
-        self.line.content = str(said)
+        self.line.content = str(feedback)
 
     def comparison(self) -> str:
         """The program's answer beside a text of the student's, once the answer of the task has been shown."""
@@ -334,39 +334,39 @@ class GuideTab:
 
     def show_values(self, task: Task) -> None:
         """Show the texts of the task with the present values."""
-        shown = self.workbook.is_shown(task)
+        is_shown = self.workbook.is_shown(task)
         self.tasks.show(task)
         compares = any(question.kind == "text" and question.why for question in task.questions)
         tools = (SET_UP, SHOW, PICTURE) if task.guide is not None or compares else (SET_UP, PICTURE)
         if self.workbook.folder is None:
-            tools = (SET_UP, HIDE if shown else SHOW)
+            tools = (SET_UP, HIDE if is_shown else SHOW)
         if self.tools.options != tools:
             self.tools.options = tools
         self.text.content = note(join((self.statement(task), self.steps(task))))
         self.readings.content = str(fill('<div class="springtide-note springtide-readings">{}</div>', self.now(task)))
-        self.answer.content = note(join((self.said(), self.answer_text(task) if shown else "")))
+        self.answer.content = note(join((self.said(), self.answer_text(task) if is_shown else "")))
         for widgets in self.questions:
             widgets.show()
 
     def statement(self, task: Task) -> Html:
         """The task, and where to look."""
         setup = self.workbook.set_up_of(task)
-        asked = bold(task.guide.question if task.guide is not None else task.title)
+        question = bold(task.guide.question if task.guide is not None else task.title)
         if self.workbook.folder is not None:
             code = fill(" Write <code>{}</code> in <code>{}</code>.", task.name, task.file) if task.file else ""
-            asked = fill("{}{}", task.statement, code)
+            question = fill("{}{}", task.statement, code)
         elsewhere = Html()
         if not self.is_set_up_here(task) and setup.scene:
             scene = in_words(setup.scene).lower()
             elsewhere = coloured(f"This task is about the {scene}: press “{SET_UP}”.", WARNING_COLOUR)
         # In a workbook the steps of a task are the instructions.
         look = Html() if self.workbook.folder is not None and task.steps else faint(setup.look)
-        return fill('<div class="springtide-guide">{}<div>{}</div>{}</div>', elsewhere, asked, look)
+        return fill('<div class="springtide-guide">{}<div>{}</div>{}</div>', elsewhere, question, look)
 
     def now(self, task: Task) -> Html:
         """The live values that the task keeps visible."""
-        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.again.names]
-        rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in found if isinstance(v, LiveNumber)]
+        values = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.again.names]
+        rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in values if isinstance(v, LiveNumber)]
         return fill("Now: {}", join(rows, " · ")) if rows else Html()
 
     def steps(self, task: Task) -> Html:

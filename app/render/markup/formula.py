@@ -34,8 +34,8 @@ class Parsed(NamedTuple):
 def formula(text: str) -> Html:
     """A formula as MathML, on a line of its own. Raises ValueError for braces that do not match, or an unknown word."""
     tokens = [match for match in TOKEN.finditer(text) if match.group().strip()]
-    found = row(tokens, 0, closed=False)
-    return fill('<math display="block" style="font-family: {}, math">{}</math>', ", ".join(FONTS), found.html)
+    content = row(tokens, 0, closed=False)
+    return fill('<math display="block" style="font-family: {}, math">{}</math>', ", ".join(FONTS), content.html)
 
 
 def row(tokens: list[re.Match[str]], at: int, *, closed: bool) -> Parsed:

@@ -76,8 +76,8 @@ class TableCell(NamedTuple):
 
 def table_row(cells: Iterable[object], tag: LiteralString = "td") -> Html:
     """A row of cells or their contents. The panel puts the first to the left, and the others, numbers, to the right."""
-    made = (cell if isinstance(cell, TableCell) else TableCell(cell) for cell in cells)
-    return fill("<tr>{}</tr>", join(cell_html(cell, tag) for cell in made))
+    table_cells = (cell if isinstance(cell, TableCell) else TableCell(cell) for cell in cells)
+    return fill("<tr>{}</tr>", join(cell_html(cell, tag) for cell in table_cells))
 
 
 def cell_html(cell: TableCell, tag: LiteralString) -> Html:

@@ -175,14 +175,14 @@ class SimLoop:
         self.take_in()
         run, activity, whole = self.run, self.run.activity, is_kept_whole()
         params, effect = effect_of_all(self.record, self.waiting)
-        asked = any(map(is_urgent, self.waiting)) or effect in ("forces", "start")
+        urgent = any(map(is_urgent, self.waiting)) or effect in ("forces", "start")
         if effect == "start" and activity != NOTHING:
             run.cancel(ABANDON if whole else 1)
             return
-        if asked and activity.may_end and not whole:
+        if urgent and activity.may_end and not whole:
             run.cancel()
             return
-        if effect == "look" and not asked and activity != OTHER_FORCES:
+        if effect == "look" and not urgent and activity != OTHER_FORCES:
             self.scene.params = params
             self.waiting = [command for command in self.waiting if not isinstance(command, Change)]
         within_steps = activity == STEPS and not whole

@@ -153,13 +153,13 @@ class Snapshots:
 
     def hand_over(self, rows: Sequence[PlotRow]) -> None:
         """Queue new plot rows for the viewer, and keep those of the present run."""
-        identity, kept = self.run.identity, self.kept_rows
+        identity, run_rows = self.run.identity, self.kept_rows
         end = self.line.follow(identity)
-        while kept and kept[-1][0] > end:
-            kept.pop()
+        while run_rows and run_rows[-1][0] > end:
+            run_rows.pop()
         for row in rows:
-            if not kept or row[0] > kept[-1][0]:  # a run that resumes from a moment repeats its row
-                kept.append(row)
+            if not run_rows or row[0] > run_rows[-1][0]:  # a run that resumes from a moment repeats its row
+                run_rows.append(row)
                 self.plot_rows.append((identity, row))
 
     def pop_rows(self) -> list[RunRow]:

@@ -68,10 +68,10 @@ def read_origin(text: str) -> str:
     if page.scheme not in DEFAULT_PORTS or not re.fullmatch(r"[a-z0-9._-]+|[0-9a-f:.]+", name):
         raise error
     host = f"[{name}]" if ":" in name else name
-    shown = host if port in (None, DEFAULT_PORTS[page.scheme]) else f"{host}:{port}"
+    netloc = host if port in (None, DEFAULT_PORTS[page.scheme]) else f"{host}:{port}"
     if text.lower().removesuffix("/") not in (f"{page.scheme}://{host}", f"{page.scheme}://{host}:{port}"):
         raise error
-    return f"{page.scheme}://{shown}"
+    return f"{page.scheme}://{netloc}"
 
 
 def read_key(text: str) -> str:
@@ -99,9 +99,9 @@ def admitted(access: Access, request: Request) -> Request | Response:
     return replace(request, path=path + mark + query)
 
 
-def is_same(given: str, expected: str) -> bool:
+def is_same(text: str, expected: str) -> bool:
     """True if two texts are equal, in a time that does not depend on how much of them is."""
-    return compare_digest(given.encode("utf-8", "replace"), expected.encode())
+    return compare_digest(text.encode("utf-8", "replace"), expected.encode())
 
 
 def refusal(status: HTTPStatus, line: str) -> Response:

@@ -489,11 +489,11 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened
 
 def open_pane(panes: Panes, number: int) -> Opened:
     """The server of a pane, reached through the port of the first lab and protected with it."""
-    with STARTING, panes.making() as made, quiet():
+    with STARTING, panes.making() as servers, quiet():
         server = viser.ViserServer(port=0, label="Springtide", verbose=False)
     opened = Opened(server, guarded(server), panes)
-    if made:
-        panes.servers[number] = made[0]
+    if servers:
+        panes.servers[number] = servers[0]
     return opened
 
 

@@ -70,9 +70,9 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
 def covered(sent: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again if it was; unchanged if it is not as expected."""
     page = (gzip.decompress(sent) if zipped else sent).decode("utf-8")
-    found = with_ours(page, title=TITLE, words=STARTING, styles=STYLES, before=BEFORE, entry=PAGE)
-    if found is None:
+    our_page = with_ours(page, title=TITLE, words=STARTING, styles=STYLES, before=BEFORE, entry=PAGE)
+    if our_page is None:
         print("springtide: the page of viser has changed: it is shown without cover and scripts", file=sys.stderr)
         return sent
-    made = found.encode()
-    return gzip.compress(made) if zipped else made
+    content = our_page.encode()
+    return gzip.compress(content) if zipped else content

@@ -99,14 +99,14 @@ class Panes:
 
     def read(self, connection: ViserConnection, request: Request) -> Request | None:
         """The request with the pane's own path, or unchanged if it names no pane; None without a request."""
-        found = PANE_PATH.match(request.path)
-        if found is None:
+        match = PANE_PATH.match(request.path)
+        if match is None:
             return request
-        number = int(found.group(1))
+        number = int(match.group(1))
         if number not in self.servers:
             return None
         self.wanted[connection] = number
-        return replace(request, path=request.path[found.end() :])
+        return replace(request, path=request.path[match.end() :])
 
     async def serve(self, connection: ViserConnection, first: Callable[[ViserConnection], Awaitable[None]]) -> None:
         """Hand a websocket to the named pane, or to `first`, the handler of the first lab, if it named none."""
@@ -120,15 +120,15 @@ class Panes:
     def making(self) -> Generator[list[Unbound]]:
         """Context in which a started websocket server is one of a pane, which is put on the list."""
         serve = websockets.asyncio.server.serve
-        made: list[Unbound] = []
+        servers: list[Unbound] = []
 
         def unbound(handler: PaneHandler, *_: object, **__: object) -> Unbound:
-            made.append(Unbound(handler))
-            return made[-1]
+            servers.append(Unbound(handler))
+            return servers[-1]
 
         websockets.asyncio.server.serve = unbound  # type: ignore[assignment]
         try:
-            yield made
+            yield servers
         finally:
             websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 

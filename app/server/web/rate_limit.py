@@ -208,8 +208,8 @@ def is_small(message: ViserMessage) -> bool:
     """True if this is an update of something in the panel that is small enough to go ahead."""
     if type(message).__name__ != "GuiUpdateMessage":
         return False
-    found = [kind_and_size(value) for value in message.updates.values()]
-    return sum(size for _, size in filter(None, found)) < SMALL
+    kinds_and_sizes = [kind_and_size(value) for value in message.updates.values()]
+    return sum(size for _, size in filter(None, kinds_and_sizes)) < SMALL
 
 
 def is_update(message: ViserMessage) -> bool:

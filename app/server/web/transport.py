@@ -57,9 +57,9 @@ class Transport:
         self.sent["messages"] += 1
         changes = getattr(message, "updates", None) or getattr(getattr(message, "props", None), "__dict__", {})
         for value in changes.values():
-            found = kind_and_size(value)
-            if found is not None:
-                kind, size = found
+            pair = kind_and_size(value)
+            if pair is not None:
+                kind, size = pair
                 self.sent[kind] += 1
                 self.sent["bytes"] += size
 
@@ -78,17 +78,17 @@ class Transport:
     def hand_over(self, picture: Sequence[object]) -> None:
         """Give viser the messages of a picture on its event loop, after those of the picture before."""
         self.wait()
-        given = self.given = threading.Event()
+        event = self.given = threading.Event()
 
         def send_all() -> None:
             # It cannot be split: the loop composes no message while this runs on it.
             self.send_together(picture)
-            given.set()
+            event.set()
 
         try:
             self.loop.call_soon_threadsafe(send_all)
         except RuntimeError:  # the server has ended
-            given.set()
+            event.set()
 
     def wait(self) -> None:
         """Wait until viser has the last frame, before another thread removes nodes."""

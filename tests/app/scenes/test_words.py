@@ -55,7 +55,8 @@ def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:
         scene.advance(3)
     except DivergenceError as error:
         yield str(error)
-    snapshot = SimpleNamespace(frame=scene.frame(), readings=scene.readings(), params=scene.params)
+    status = SimpleNamespace(halted="")
+    snapshot = SimpleNamespace(frame=scene.frame(), readings=scene.readings(), params=scene.params, status=status)
     for read in ("figures", "readout", "marks", "notes"):
         if hasattr(view, read):
             found = getattr(view, read)(NOT_DRAWN, snapshot)

@@ -111,3 +111,15 @@ test("a question that is not answered is late, and one that is asked again is no
   change();
   await assert.rejects(second, /late/);
 });
+
+test("a question is late where no lab listens too, and each has its own time", async () => {
+  show({});
+  const patient = ask("open", "?a=1"), hasty = ask("link", "", 5);
+  await new Promise((resolve) => setTimeout(resolve, 10));
+  change();
+  await assert.rejects(hasty, /late/);
+  show(lab("open", "link"));
+  assert.deepEqual(messages.map(([, , , topic]) => topic), ["open"]);
+  show({ ...lab("open"), answers: [["own", messages[0][2], "taken"]] });
+  assert.equal(await patient, "taken");
+});

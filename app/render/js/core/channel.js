@@ -8,7 +8,7 @@ import { springtide } from "./springtide.js";
 import { connectionNumber, PAGE, send } from "./viewer.js";
 import { onChange, onLook } from "./watch.js";
 
-const PATIENCE = 60_000; // [ms] after a question was sent first, within which it is asked again in a new panel
+const PATIENCE = 60_000; // [ms] after a question was sent first, in which it is asked again in a new panel
 /** @typedef {(state: any) => void} Listener */
 
 /** @type {Record<string, { text: string, state: any }>} */
@@ -74,14 +74,14 @@ export function tell(topic, state) {
 /** @type {Map<string, Question>} */
 const questions = new Map(); // topic -> its unanswered question
 
-// Ask the lab, again in each panel until it answers. Resolves with the answer. Rejects with an Error, "late" after `patience`
-// [ms] from the first time that it was sent, and "asked again" if another question of the topic follows.
-/** @param {string} topic @param {unknown} value @param {number} patience @returns {Promise<any>} */
-export function ask(topic, value, patience = PATIENCE) {
+// Ask the lab, again in each panel until it answers. Resolves with the answer. Rejects with an Error: "late" after `within` [ms],
+// whether or not a lab listens, or after PATIENCE; "asked again" if another question of the topic follows.
+/** @param {string} topic @param {unknown} value @param {number} within @returns {Promise<any>} */
+export function ask(topic, value, within = Infinity) {
   questions.get(topic)?.reject(new Error("asked again"));
   return new Promise((resolve, reject) => {
-    questions.set(topic, { number: ++count, value, sentTo: "", until: Infinity, resolve, reject });
-    post(patience);
+    questions.set(topic, { number: ++count, value, sentTo: "", until: performance.now() + within, resolve, reject });
+    post();
   });
 }
 
@@ -97,7 +97,7 @@ function settle() {
 }
 
 // Send what the present panel has not had yet.
-function post(patience = PATIENCE) {
+function post() {
   for (const [topic, one] of told) {
     const to = addressOf(topic);
     if (to && to !== one.sentTo && put(topic, ++count, JSON.parse(one.text))) one.sentTo = to;
@@ -110,11 +110,11 @@ function post(patience = PATIENCE) {
       one.reject(new Error("late"));
     } else if (to && to !== one.sentTo && put(topic, one.number, one.value)) {
       one.sentTo = to;
-      one.until = Math.min(one.until, now + patience);
+      one.until = Math.min(one.until, now + PATIENCE);
     }
   }
 }
 
 springtide.channel = { topicState, say };
 onChange(read);
-onLook(() => post()); // a new connection changes no element, and a question may be late
+onLook(post); // a new connection changes no element, and a question may be late

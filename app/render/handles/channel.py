@@ -1,8 +1,8 @@
 """The channel between a lab and its pages: topics, down and up (`js/core/channel.js` is its other end).
 
-Down, each topic has a state, which a page has whole as soon as it is connected. Up, a page sends messages on topics
-that the lab listens to, through one hidden field. Each message has the name of the page and a number, so that an answer
-belongs to one message.
+Down: the lab sets the state of a topic, and viser sends it whole to each page that connects. Up: a page sends messages
+on topics that the lab listens to, through one hidden field. Each message has the name of the page and a number, so that
+an answer belongs to one message.
 
 Topics down:
 
@@ -17,6 +17,7 @@ Topics down:
 import collections
 import json
 import math
+import threading
 from collections.abc import Callable
 from typing import Any, Generic, Literal, NamedTuple, TypeVar, cast
 
@@ -55,10 +56,11 @@ class Answer(NamedTuple):
 
 
 class Channel:
-    """The channel of one server. States are set on the viewer's thread; messages come on viser's event loop."""
+    """The channel of one server. Messages come on viser's event loop; the viewer's thread sets states too."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
+        self._telling = threading.Lock()  # a state and its element change together
         self._answers: collections.deque[Answer] = collections.deque(maxlen=ANSWERS)
         self.restart()
 
@@ -78,9 +80,10 @@ class Channel:
 
     def tell(self, topic: Down, state: object) -> None:
         """Set the state of a topic, which JSON can hold."""
-        if topic not in self._states or self._states[topic] != state:
-            self._states[topic] = state
-            self._elements[topic].content = str(topic_html(topic, state))
+        with self._telling:
+            if topic not in self._states or self._states[topic] != state:
+                self._states[topic] = state
+                self._elements[topic].content = str(topic_html(topic, state))
 
     def state_of(self, topic: Down) -> object:
         """The state of a topic; None while it has none."""

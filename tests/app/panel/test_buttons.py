@@ -153,7 +153,7 @@ def test_every_button_of_every_tab_is_pressed(
         wait_for(lambda before=before: pressed.shown() != before)
     say(pressed.panel.share.channel, "link", "", client=pressed.client)
     answers = [answer.number for answer in pressed.panel.share.channel._answers]
-    assert len(set(answers)) == 2  # each press has an answer of its own
+    assert len(set(answers)) == 2  # each press has a separate answer
     labels = [label for _, label in done]
     assert {*CONFIRMED, "Play", "Pause", "Step", "Reset"} <= {
         *labels,

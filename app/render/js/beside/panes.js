@@ -1,4 +1,4 @@
-// The panes: each is a lab of its own in a frame, with words above it.
+// The panes: each shows a separate lab in a frame, below its title.
 //
 // The frames are of this page's own address. Of each, this page uses its channel to the lab (core/channel.js), the status line of
 // its panel, and viser's window.__viserMutable.
@@ -10,7 +10,7 @@ const main = /** @type {HTMLElement} */ (document.querySelector("main"));
 export class Pane {
   middle = [0, 0]; // [m] of its scene, in the scene's frame
   isBare = true; // its panel is hidden
-  isConnected = true; // a browser is connected to its lab, as the first lab says
+  isConnected = true; // false once the first lab says that no browser is connected to its lab
   /** @type {number[] | null} */
   pose = null; // where its camera was put last
   #words = document.createElement("span");

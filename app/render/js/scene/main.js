@@ -2,7 +2,7 @@
 //
 // A node requests a shader by a hidden child mesh with its suffix: "/rope" has a colour at each vertex if there is a
 // "/rope/vertex_colors". All data travels as vertices, so that new scenes, browsers that connect later and recordings need no
-// further script. A lab that draws by viser's public interface alone does not listen to reports: there nothing is
+// further script. A lab that draws by viser's public interface alone has no topic "picture": there nothing is
 // replaced.
 
 import { topicState, tell } from "../core/channel.js";

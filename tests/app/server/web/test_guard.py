@@ -225,6 +225,26 @@ def test_a_link_that_comes_before_its_browser_is_counted_is_shown_to_the_others(
     assert lab.changes.latest.before.params == before
 
 
+def test_messages_to_one_control_are_merged_and_those_to_the_channel_are_not() -> None:
+    handled: list[tuple[str, str]] = []
+
+    async def handle(client: int, message: Any) -> None:
+        handled.append((message.uuid, message.updates["value"]))
+
+    async def send() -> None:
+        intake = Intake(lambda message: message, [handle], lambda uuid: uuid == "channel")
+        intake.counted = True
+        for value in ("1", "2", "3"):
+            for uuid in ("slider", "channel"):
+                intake.queue(1, vm.GuiUpdateMessage(uuid, {"value": value}))
+        assert intake.turn is not None
+        await intake.turn
+
+    coroutines.run(send())
+    assert [value for uuid, value in handled if uuid == "channel"] == ["1", "2", "3"]
+    assert [value for uuid, value in handled if uuid == "slider"] == ["3"]
+
+
 def test_a_callback_that_fails_is_reported_and_loses_no_other_message(capsys: pytest.CaptureFixture) -> None:
     handled: list[str] = []
 

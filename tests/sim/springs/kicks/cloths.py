@@ -28,7 +28,7 @@ def volumes(a, b, c):
 
 
 def crossings(before, after, pairs, parts):
-    """Pairs (n, 4), of which the first `parts` points are one of the two, that cross in a straight motion (points, 3).
+    """Pairs (n, 4) that cross in a straight motion (points, 3); the first `parts` points of each are its first thing.
 
     The four points are in one plane where the volume between them, a cubic in time, vanishes.
     """

@@ -90,6 +90,12 @@ least_distance = by_touch(
 )
 
 
+@kernel(inline=True)
+def least_after(p, distance):
+    """Distance [m] that a pair has to keep in a step that begins at this distance."""
+    return min(least_distance(p), MOST_CLOSING * distance)
+
+
 @kernel(allocates=False)
 def places_during(x, p, four, time):
     """The `NearestPlaces` at a part of the step."""
@@ -109,7 +115,7 @@ def meeting(x, p, four):
     approach each other; NEVER if they never are."""
     n = p.rows * p.cols
     places = places_at(p.last, n, four)
-    least, most = min(least_distance(p), MOST_CLOSING * places.distance), closing_bound(x, p.last, n, four)
+    least, most = least_after(p, places.distance), closing_bound(x, p.last, n, four)
     time = 0.0
     if places.distance - least >= most or places.distance == 0.0:
         return NEVER, places, least
@@ -209,7 +215,7 @@ def hold_back(x, v, p):
             continue
         four = four_at(p, q)
         distance = places_at(p.last, n, four).distance
-        most = BOUND * (distance - min(least_distance(p), MOST_CLOSING * distance))
+        most = BOUND * (distance - least_after(p, distance))
         for e in range(4):
             j = point_of(four, e)
             dx, dy, dz = x[j] - p.last[j] - mx, x[n + j] - p.last[n + j] - my, x[2 * n + j] - p.last[2 * n + j] - mz

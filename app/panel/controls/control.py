@@ -9,7 +9,7 @@ from app.formats.round_step import round_step
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import fill
-from sim.parameters import Parameter, Value, clamp_value, in_words, parameters_of, parse_value
+from sim.parameters import Parameter, Value, in_words, parameters_of, parse_value
 from sim.quantities import write_number
 
 SLIDER_STEPS = 400  # at most, over a slider's range
@@ -46,20 +46,20 @@ class SliderScale:
         at = math.log10(max(number, self.parameter.log_from)) if self.parameter.log_from else number
         return min(max(at, self.low), self.high)
 
-    def value(self, position: float) -> Value:
-        """The number at a position: three digits by decades, whole steps otherwise.
+    def value(self, position: float) -> float:
+        """The number at a position, which the settings bound: three digits by decades, whole steps otherwise.
 
         Both ends mean the bounds; the left end of a logarithmic slider is the least value, which may be 0.
         """
         p = self.parameter
         if position <= self.low + 1e-9 * abs(self.low):
-            return clamp_value(p, p.low)
+            return p.low
         if position >= self.high - 1e-9 * abs(self.high):
-            return clamp_value(p, p.high)
+            return p.high
         if p.log_from:
-            return clamp_value(p, float(f"{10.0**position:.3g}"))
+            return float(f"{10.0**position:.3g}")
         steps = round(position / self.step)
-        return clamp_value(p, float(f"{steps * self.step:.6g}"))
+        return float(f"{steps * self.step:.6g}")
 
 
 class Control:

@@ -2,8 +2,9 @@
 
 viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
 drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
-from a browser passes `MessageFilter`: a short list of message types, only finite bounded numbers, and GUI values within
-the range of their control. If viser has changed so that this is not possible, only loopback addresses are served.
+from a browser passes `MessageFilter`: a short list of message types, only finite bounded numbers, and GUI values of the
+kind of their control. Their range is decided where they are used. If viser has changed so that this is not possible,
+only loopback addresses are served.
 """
 
 # pyright: reportPrivateUsage=false
@@ -245,29 +246,21 @@ def is_number(value: object) -> TypeGuard[float]:
 
 # Type of the value of each GUI element.
 FLAGS = (viser.GuiCheckboxHandle, viser.GuiButtonHandle)
-NUMBERS = (viser.GuiSliderHandle, viser.GuiNumberHandle)
 CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
 
 
 def allowed_value(handle: GuiHandle, value: object) -> object:
-    """`value` within the range or choices of a GUI control; None if it is not a valid value."""
+    """`value` if it is of the kind that a GUI control takes, a long text cut; None otherwise.
+
+    A number may be out of its parameter's range, which the settings decide.
+    """
     kind = cast("type[object]", type(handle))
     if issubclass(kind, FLAGS):
         return value if isinstance(value, bool) else None
-    if issubclass(kind, NUMBERS):
-        if not is_number(value):
-            return None
-        low = -MAX_NUMBER if handle.min is None else handle.min
-        high = MAX_NUMBER if handle.max is None else handle.max
-        bounded = min(max(value, low), high)
-        return round(bounded) if isinstance(handle.value, int) else float(bounded)
     if issubclass(kind, viser.GuiMultiSliderHandle):
-        if not is_sequence(value) or len(value) != len(handle.value) or not is_bounded(value):
+        if not is_sequence(value) or len(value) != len(handle.value) or not all(map(is_number, value)):
             return None
-        numbers = [number for number in value if is_number(number)]
-        if len(numbers) < len(value):
-            return None
-        return tuple(float(min(max(number, handle.min), handle.max)) for number in numbers)
+        return tuple(float(number) for number in value if is_number(number))
     if issubclass(kind, CHOICES):
         return value if isinstance(value, str) and value in handle.options else None
     if issubclass(kind, viser.GuiTextHandle):
@@ -297,9 +290,9 @@ class MessageFilter:
         self.pages: dict[ClientId, str] = {}  # connected clients that are pages of ours, with their names
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
-        """The message, with its value bounded if that is enough, or None if it is refused.
+        """The message, with a text cut to its greatest length, or None if it is refused.
 
-        Counts refused messages, and tells every browser a bounded value.
+        Counts refused messages, and tells every browser a value that is not the one sent.
         """
         if kind_of(message) != "GuiUpdateMessage":
             good = message if kind_of(message) in ALLOWED and is_bounded(dataclasses.asdict(message)) else None
@@ -313,7 +306,7 @@ class MessageFilter:
         return good
 
     def judge_update(self, message: ViserMessage) -> ViserMessage | None:
-        """A new value of a control, within its range or choices; None if it is not valid."""
+        """A new value of a control, of its kind; None if it is not valid."""
         handle = input_of(self.server, message.uuid)
         if handle is UNKNOWN:
             return message if is_bounded(message.updates) else None

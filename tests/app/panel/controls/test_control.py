@@ -17,8 +17,9 @@ from app.panel.controls.remedy import Remedy
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import Advice
 from app.server.viewer import Viewer
-from sim.parameters import Parameter, parameters_of
+from sim.parameters import Parameter, clamp_value, parameters_of
 from tests import coroutines
+from tests.app.server.visitors import until, visitor
 
 
 def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) -> None:
@@ -107,7 +108,7 @@ def test_a_slider_reaches_both_bounds_in_fine_steps_and_shows_each_number_in_its
     # Numbers of a few digits.
     before = p.low
     for step in range(1, 40):
-        value = scale.value(scale.low + (scale.high - scale.low) * step / 40)
+        value = clamp_value(p, scale.value(scale.low + (scale.high - scale.low) * step / 40))  # as the settings take it
         assert type(value) is p.kind
         assert before <= value <= p.high
         assert value == float(f"{value:.6g}")
@@ -120,7 +121,7 @@ def test_a_slider_reaches_both_bounds_in_fine_steps_and_shows_each_number_in_its
     # One step from its ends it means a number one step from its bounds.
     for position in (low + scale.step, high - scale.step):
         exact = 10.0**position if p.log_from else position
-        value = scale.value(position)
+        value = clamp_value(p, scale.value(position))
         # Three digits by decades, multiples of the step otherwise; integers are whole.
         rounding = max(0.005 * exact if p.log_from else 0.5 * scale.step, 0.5 if p.kind is int else 0.0)
         assert value == pytest.approx(exact, abs=1.001 * rounding)
@@ -205,6 +206,25 @@ def test_a_slider_that_a_browser_moves_sets_the_value_at_its_place(lab: Viewer) 
     before = lab.settings.params
     coroutines.run(control.on_slider(SimpleNamespace(client_id=None, target=None)))  # the program moved it
     assert lab.settings.params is before
+
+
+@pytest.mark.parametrize(("position", "end"), [(99.0, "high"), (1e300, "high"), (-1e300, "low")])
+def test_a_place_beyond_the_end_of_a_slider_is_its_end(lab: Viewer, position: float, end: str) -> None:
+    control = lab.panel.controls["stiffness"]
+    slider, bound, times = control.slider, getattr(control.parameter, end), []
+    assert slider is not None
+    slider.on_update(lambda event: times.append(event.client_id))  # called after the control's own
+
+    async def slide() -> None:
+        async with visitor(lab) as browser:
+            for _ in range(2):  # the second one changes nothing, and is answered too
+                times.clear()
+                await browser.send(slider, [position])
+                await until(lambda: browser.client in times)
+                assert lab.settings.params.stiffness == bound
+                assert slider.value == (getattr(control.scale, end),)
+
+    coroutines.run(slide())
 
 
 def test_the_button_of_a_remedy_is_hidden_until_there_is_an_advice(server: Any) -> None:

@@ -1,4 +1,4 @@
-"""After any acts and undos the screen is that of the act before: random sequences against a model of history.
+"""After any acts and undos of two browsers the screen is that of the act before: sequences against a model of history.
 
 The model is a stack of screens. It knows which acts begin a run, and nothing of the program: no commands, no numbers,
 no merging and no compiler.
@@ -40,6 +40,7 @@ FORCES = {
 }  # fmt: skip
 STARTS = {"cloth": "gather", "race": "length", "square_sea": "length", "mooring": "length"}
 PRESETS = 3
+BROWSERS = (1, 2)
 SLOW = ("mooring", "radial_sea")
 
 
@@ -150,7 +151,11 @@ class Lab:
         params = dataclasses.replace(self.model.screen.params, **values)
         if params != self.model.screen.params:
             self.model.act(params, begins=starts)
-        self.settings.set_all(values)
+        self.settings.set_all(values, self.rng.choice(BROWSERS))
+        self.later()
+
+    def later(self) -> None:
+        """Let a time pass after which a change of the same number is another act."""
         self.settings.history.changed_at -= 100.0  # [s]
 
     def look(self) -> None:
@@ -172,23 +177,47 @@ class Lab:
             value = self.changed(name)
             self.set({name: value}, starts=value != getattr(self.model.screen.params, name))
 
-    def drag(self) -> None:
-        """A slider from press to release, however long it takes; it ends elsewhere than it began."""
+    def slide(self, browser: int) -> None:
+        """A browser moves the slider that it holds, however long it takes: an act."""
         name = STARTS.get(self.kind.name, FORCES[self.kind.name][0])
-        before = self.model.screen.params
-        values = [value for value in (self.changed(name) for _ in range(4)) if value != getattr(before, name)]
-        if not values:
-            return
-        self.settings.history.press(1)
+        now, values = self.model.screen.params, []
+        while not values or values[-1] == getattr(now, name):  # it ends elsewhere than it began
+            values.append(self.changed(name))
         for value in values:
-            self.settings.set(name, value, 1)
-            self.settings.history.changed_at -= 100.0
+            self.settings.set(name, value, browser)
+            self.later()
             if self.rng.random() < 0.3:
                 self.loop.tick(0.0)
-        self.settings.history.release(1)
-        self.settings.history.number = ""  # later
-        begins = name in STARTS.values()
-        self.model.act(dataclasses.replace(before, **{name: values[-1]}), begins=begins)
+        self.model.act(dataclasses.replace(now, **{name: values[-1]}), begins=name in STARTS.values())
+
+    def drag(self) -> None:
+        """A slider from press to release."""
+        browser = self.rng.choice(BROWSERS)
+        self.settings.history.press(browser)
+        self.slide(browser)
+        self.settings.history.release(browser)
+        self.later()
+
+    def drag_beside_another(self) -> None:
+        """A browser holds a slider, which the other changes too: each drag is an act."""
+        holder, other = self.rng.sample(BROWSERS, 2)
+        for browser in (holder, other):
+            self.settings.history.press(browser)
+        for browser in (holder, other, holder):
+            self.slide(browser)
+        for browser in (holder, other):
+            self.settings.history.release(browser)
+        self.later()
+
+    def undo_under_a_hand(self) -> None:
+        """The other browser undoes in the middle of a drag, which is another act from there on."""
+        browser = self.rng.choice(BROWSERS)
+        self.settings.history.press(browser)
+        self.slide(browser)
+        self.undo()
+        self.slide(browser)
+        self.settings.history.release(browser)
+        self.later()
 
     def preset(self) -> None:
         number = self.rng.randrange(PRESETS)
@@ -310,8 +339,8 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
     rng = random.Random(f"{name} {seed} {compiles}")
     lab = Lab(name, rng, compiles=compiles)
     acts = [
-        lab.look, lab.force, lab.several, lab.start, lab.drag, lab.preset, lab.reset, lab.plots, lab.advice, lab.moment,
-        lab.pull, lab.place,
+        lab.look, lab.force, lab.several, lab.start, lab.drag, lab.drag_beside_another, lab.undo_under_a_hand,
+        lab.preset, lab.reset, lab.plots, lab.advice, lab.moment, lab.pull, lab.place,
     ]  # fmt: skip
     for _ in range(rng.randint(1, MAX_ACTS)):
         rng.choice([*acts, *[lab.undo] * 4, *[lab.redo] * 2])()

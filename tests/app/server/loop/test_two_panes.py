@@ -71,6 +71,7 @@ class Pair:
             pane.loop.join(seat)
             pane.settings.watchers.append(lambda pane=pane: record.take(pane, pane.settings.params))  # type: ignore[misc]
             record.join(pane)  # type: ignore[arg-type]
+        self.acting: Pane | None = None  # the lab whose acts the loops have not handled
         self.settle()
         for pane in self.panes:
             pane.model.screen.params = pane.settings.params
@@ -89,14 +90,21 @@ class Pair:
         for _ in range(6):
             for pane in self.rng.sample(self.panes, 2):
                 pane.loop.tick(0.0)
+        self.acting = None
 
     def do(self, pane: Pane, act: Callable[[], None]) -> None:
-        """An act in one lab, and what follows in the model of the other."""
+        """An act in one lab, and what follows in the model of the other.
+
+        Acts of one lab may be merged. Those of two labs within a frame have no order.
+        """
         model, other = pane.model, self.other(pane)
+        if self.acting not in (None, pane):
+            self.settle()
         run = model.screen.run
         act()
         if model.screen.run is not run and act not in (pane.moment, pane.pull, pane.place):
-            other.begin_anew()
+            (other.begin_anew if self.acting is None else other.move_on)()
+        self.acting = pane
         self.share(pane, other)
 
     def other(self, pane: Pane) -> Pane:

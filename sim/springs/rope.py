@@ -126,18 +126,22 @@ def lab_units(
     mass_per_length: float,
     axial_viscosity: float,
     drag_per_length: float,
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """`rope`'s per-link and per-point numbers of a rope given in material units, so that points only refine it.
 
     axial_stiffness EA [N], mass_per_length [kg/m], axial_viscosity [N s], drag_per_length [N s/m^2].
-    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n. Of first order in 1/n only, where the last
-    point is free: it has the mass of a whole link instead of half.
+    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n. Masses are (points,) [kg], that of the last
+    point half a link's. So the error falls with 1/n^2; with drag with 1/n where that end is free, as each point has one
+    drag.
 
     Raises ValueError, naming the argument, its value and what is allowed.
 
     >>> material = {"axial_stiffness": 500.0, "mass_per_length": 1.0, "axial_viscosity": 0.1, "drag_per_length": 0.0}
-    >>> rope(11, 2.0, **lab_units(11, 2.0, **material)).families[0].stiffness  # [N/m] of each of ten links
+    >>> net = rope(11, 2.0, **lab_units(11, 2.0, **material))
+    >>> net.families[0].stiffness  # [N/m] of each of ten links
     2500.0
+    >>> net.masses[0, -2:].tolist()  # [kg]
+    [0.2, 0.1]
     """
     check_points(points)
     check_number("length", length, "m", 0, FARTHEST, above=True)
@@ -146,8 +150,11 @@ def lab_units(
     check_number("axial_viscosity", axial_viscosity, "N s", 0)
     check_number("drag_per_length", drag_per_length, "N s/m^2", 0)
     spacing = length / max(points - 1, 1)
+    mass = np.full(points, mass_per_length * spacing)
+    if points > 1:
+        mass[-1] /= 2.0
     return {
-        "mass": mass_per_length * spacing,
+        "mass": mass,
         "stiffness": axial_stiffness / spacing,
         "damping": axial_viscosity / spacing,
         "drag": drag_per_length * spacing,

@@ -58,8 +58,8 @@ class RopeInstant(SceneInstant):
 
 
 def carried_weight(p: RopeParams) -> float:
-    """Weight [N] that the top spring carries at rest."""
-    return link_and_point(p)["mass"] * p.gravity * (p.points - 1)
+    """Weight [N] of the rope that the top spring carries at rest."""
+    return float(np.broadcast_to(link_and_point(p)["mass"], p.points)[1:].sum()) * p.gravity
 
 
 def largest_stiffness(now: Any) -> float:

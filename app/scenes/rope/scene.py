@@ -63,13 +63,13 @@ def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE, *, o
     of_tasks: only what the tasks' functions have: points that touch, one held root, equal masses.
     """
     ball = (*sphere, params.sphere_radius) if params.sphere else None
-    net = build_rope(params, root, ball, links_touch=not of_tasks, self_contact=touches_itself(params) and not of_tasks)
+    net = build_rope(params, root, ball, self_contact=touches_itself(params), of_tasks=of_tasks)
     if params.start != "level":
         net = dataclasses.replace(net, x0=state_of(start_points(params, root)))
     if params.end_held and not of_tasks:
         net = dataclasses.replace(net, pinned=net.pinned | {(0, params.points - 1)})
     if params.tip_mass > 0.0 and not of_tasks:
-        ratios = np.ones(net.shape)
+        ratios = net.masses / net.mass
         ratios[0, -1] += params.tip_mass / net.mass
         net = dataclasses.replace(net, mass_ratios=ratios)
     return net

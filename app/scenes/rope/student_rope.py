@@ -56,4 +56,6 @@ def left_out(params: RopeParams) -> tuple[str, ...]:
         lines.append("End held: the last point of both ropes is free, as in the tasks.")
     if params.tip_mass > 0.0:
         lines.append("Weight at the tip: all points of both ropes have one mass, as in the tasks.")
+    if params.units == "material":
+        lines.append("Mass per metre: the last point of both ropes has a whole link's mass, as in the tasks.")
     return tuple(lines)

@@ -1,6 +1,9 @@
 """The parameters that the scenes of ropes share, and the net that they describe."""
 
 import dataclasses
+from typing import Any
+
+import numpy as np
 
 from app.messages import Vector
 from app.scenes.groups import in_look, in_main, in_rope, in_surroundings, speed_parameter
@@ -89,8 +92,8 @@ def stiffness_parameter(params: SharedRopeParams) -> str:
     return "stiffness" if params.units == "lab" else "axial_stiffness"
 
 
-def link_and_point(params: SharedRopeParams) -> dict[str, float]:
-    """Stiffness [N/m] and damping [N s/m] of a link, mass [kg] and air drag [N s/m] of a point."""
+def link_and_point(params: SharedRopeParams) -> dict[str, Any]:
+    """Stiffness [N/m] and damping [N s/m] of a link, air drag [N s/m] of a point, and mass [kg] of one or of each."""
     if params.units == "lab":
         return {name: getattr(params, name) for name in LAB_ONLY}
     p = params
@@ -102,20 +105,21 @@ def build_rope(
     root: Vector = ROOT,
     sphere: tuple[float, float, float, float] | None = None,
     *,
-    links_touch: bool = True,
     self_contact: bool = False,
+    of_tasks: bool = False,
 ) -> Net:
     """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None.
 
-    links_touch: False: only the points of the rope touch the sphere. self_contact: links touch each other.
+    self_contact: links touch each other. of_tasks: only what the tasks' functions have: points that touch, and equal
+    masses.
     """
     lab = link_and_point(params)
     p = params
-    contact = Contact(p.contact_stiffness, p.contact_damping, p.friction, p.contact_law, links_touch)
+    contact = Contact(p.contact_stiffness, p.contact_damping, p.friction, p.contact_law, not of_tasks)
     return rope(
         params.points,
         params.length,
-        mass=lab["mass"],
+        mass=float(np.max(lab["mass"])) if of_tasks else lab["mass"],
         stiffness=lab["stiffness"],
         damping=lab["damping"],
         drag=lab["drag"],
@@ -127,5 +131,5 @@ def build_rope(
         law=params.law,
         contact=contact,
         radius=ROPE_RADIUS,
-        self_contact=self_contact,
+        self_contact=self_contact and not of_tasks,
     )

@@ -1,7 +1,10 @@
 import dataclasses
+import math
 
 import numpy as np
 import pytest
+import scipy.linalg
+import scipy.special
 
 from sim.springs import Grab, cloth, lab_units, rope
 from sim.springs.statics import hanging_chain
@@ -58,14 +61,34 @@ def test_in_lab_units_a_rope_stretches_with_its_points_and_in_material_units_it_
     assert np.ptp(material) < 5e-3
 
 
-def test_material_units_stretch_as_the_continuum_but_for_the_end_point_s_surplus_half():
-    """A hanging bar stretches by w L^2/(2 EA). Every point has a whole spacing's mass, the last one too, which stands
-    for half a spacing only: its surplus m/2 stretches each of n links by m g/(2 k), and nothing else differs."""
-    for links in (8, 16, 64):
+def test_material_units_stretch_as_the_continuum():
+    """A hanging bar stretches by w L^2/(2 EA), with any number of links, as half a link's mass stands at its end."""
+    for links in (1, 8, 16, 64):
         net = rope(links + 1, 2.0, gravity=10.0, **lab_units(links + 1, 2.0, 500.0, 1.0, 0.0, 0.0))
-        surplus = links * net.mass / 2 * 10.0 / net.families[0].stiffness
         stretch = -hanging_chain(net).x[-1, 2] - 2.0
-        assert stretch - surplus == pytest.approx(10.0 * 2.0**2 / (2.0 * 500.0), rel=1e-12)
+        assert stretch == pytest.approx(10.0 * 2.0**2 / (2.0 * 500.0), rel=1e-12)
+
+
+def frequencies_of_hanging(links):
+    """Lowest frequencies [rad/s] across and along of a rope of 2 m and 1 kg/m in material units, from its masses.
+
+    Across, a link pulls with its tension over its length; along, with its stiffness. EA is so large that it hangs 2 m.
+    """
+    net = rope(links + 1, 2.0, gravity=10.0, **lab_units(links + 1, 2.0, 1e9, 1.0, 0.0, 0.0))
+    across = hanging_chain(net).tension / (2.0 / links)
+    along = np.full(links, net.families[0].stiffness)
+    for stiffness in (across, along):
+        matrix = np.diag(stiffness + np.append(stiffness[1:], 0.0))
+        matrix -= np.diag(stiffness[1:], 1) + np.diag(stiffness[1:], -1)
+        yield math.sqrt(scipy.linalg.eigh(matrix, np.diag(net.masses[0, 1:]), eigvals_only=True)[0])
+
+
+def test_a_rope_in_material_units_swings_as_the_continuum_at_second_order():
+    """Bernoulli: the first zero of J0, times sqrt(g / L) / 2. A bar: pi / 2, times sqrt(EA / mu) / L."""
+    exact = 0.5 * scipy.special.jn_zeros(0, 1)[0] * math.sqrt(10.0 / 2.0), 0.5 * math.pi * math.sqrt(1e9) / 2.0
+    errors = np.array([list(frequencies_of_hanging(links)) for links in (9, 18, 36)]) / exact - 1.0
+    assert np.abs(errors[0]).max() < 4e-3
+    assert errors[:-1] / errors[1:] == pytest.approx(4.0, rel=0.02)
 
 
 def test_points_of_a_size_touch_floor_and_sphere_with_their_surface():

@@ -28,7 +28,7 @@ from tests.waiting import wait_for
 TASKS = load_tasks()
 FRAME = 1 / 15  # [s] of a scene's motion
 BEFORE, AFTER = 0.1, 0.5  # [s] of motion before and after the parameter is changed
-FALL = 1.0  # [s] after which the floor is reached
+FALL = 1.6  # [s] after which the floor is reached
 # A parameter is tested in the first of these in which it acts on the motion. The rope falls over the sphere onto the
 # floor, its root swings, and a hand pulls it. The cloth falls over a sphere that moves up and down, onto the floor, in
 # the wind, and a hand pulls it; or it hangs in pleats that touch each other.

@@ -114,11 +114,11 @@ def test_implicit_methods_do_not_touch_and_the_panel_does_not_offer_it() -> None
 
 
 def test_beside_a_students_rope_only_what_the_tasks_have_is_there() -> None:
-    params = check_record(RopeParams, {"self_contact": True, "end_held": True, "tip_mass": 2.0})
+    params = check_record(RopeParams, {"self_contact": True, "end_held": True, "tip_mass": 2.0, "units": "material"})
     net = build(params, of_tasks=True)
     assert (net.thickness, net.mass_ratios, net.pinned) == (0.0, None, frozenset({(0, 0)}))
     words = " ".join(left_out(params))
-    assert all(name in words for name in ("Touches itself", "End held", "Weight at the tip"))
+    assert all(name in words for name in ("Touches itself", "End held", "Weight at the tip", "Mass per metre"))
     assert left_out(RopeParams()) == ()
 
 

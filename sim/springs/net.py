@@ -23,6 +23,7 @@ from sim.springs.points.arrays import (
     ClothArrays,
     GridArrays,
     RopeArrays,
+    RubArrays,
     StrandArrays,
     TouchArrays,
     WideArrays,
@@ -323,7 +324,7 @@ class Net(PointSystem[Run]):
         if isinstance(view, GridArrays):
             return view
         view = view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
-        return view if self.is_strand else view._replace(**self._cell_arrays())
+        return view._replace(**(self._rub_arrays()._asdict() if self.is_strand else self._cell_arrays()))
 
     @functools.cached_property
     def _unit_step_view(self) -> Any:
@@ -347,7 +348,9 @@ class Net(PointSystem[Run]):
             families=np.reshape([f[2:] for f in self.families], (-1, 3)),
             forces=declared(self.forces),
             conserves_momentum=self.is_isolated,
-            conserves_spin=self.is_isolated and not (damped and self.damping_model == "isotropic"),
+            conserves_spin=self.is_isolated
+            and not (damped and self.damping_model == "isotropic")
+            and not (self.is_strand and self.contact.friction > 0.0),
             damped=damped,
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,
@@ -386,7 +389,7 @@ class Net(PointSystem[Run]):
             nearest=np.zeros(1),
         )
         if self.is_chain:
-            return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12))
+            return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12), *self._rub_arrays())
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,
@@ -403,6 +406,12 @@ class Net(PointSystem[Run]):
         if [f[:2] for f in self.families] != CLOTH:
             return grid
         return ClothArrays(*grid, np.zeros_like(touch.seen), np.zeros(12), **self._cell_arrays())
+
+    def _rub_arrays(self) -> RubArrays:
+        """`RubArrays` of a list that is not yet made."""
+        touching = np.empty((self.most_pairs + 1, 2), np.int64)
+        touching[-1] = -1
+        return RubArrays(touching, np.empty((self.most_pairs, 13)))
 
     def _cell_arrays(self) -> dict[str, Any]:
         """`CellArrays` of a list that is not yet made."""

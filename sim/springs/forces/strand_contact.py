@@ -5,8 +5,8 @@ acts along the line between these places and goes to the ends of each link by it
 angular momentum stay. Where two links of a strand touch another at their common point, both push. The places of two
 parallel links may lie anywhere along their overlap: there the force is not continuous in the angle between them.
 
-Damping acts along the same line, and never pulls. There is no friction between strands. Implicit methods refuse such
-a chain (`Net.check_integrator`), so that the force has no blocks of their matrix.
+Damping acts along the same line, and never pulls. Friction is a force of its own (`strand_friction`). Implicit methods
+refuse such a chain (`Net.check_integrator`), so that the force has no blocks of their matrix.
 """
 
 import math
@@ -18,7 +18,7 @@ from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
 from sim.springs.forces.record import Force
 from sim.springs.points.arrays import StrandArrays, span
 from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
-from sim.springs.points.near_pairs import are_neighbours, pairs_at_hand, refresh_pairs
+from sim.springs.points.near_pairs import are_neighbours, refresh_pairs
 from sim.springs.points.order import in_turn
 from sim.springs.points.places import dot
 
@@ -64,14 +64,34 @@ def add_kick(out, p, pair, size):
 
 
 @kernel(allocates=False)
-def accelerate(x, v, t, p, with_damping, f, a):
+def set_touching(x, p):
+    """List the pairs that touch; returns their number."""
+    count = 0
     for q in range(refresh_pairs(x, p)):
-        if not pushes(p, q):
-            continue
-        pair = pair_number(x, p, q)
-        depth = depth_of(p, pair)
-        if depth > 0.0:
-            add_kick(a, p, pair, push_of(v, p, pair, depth, with_damping))
+        if pushes(p, q) and depth_of(p, pair_number(x, p, q)) > 0.0:
+            p.touching[count, 0], p.touching[count, 1] = p.pairs[q, 0], p.pairs[q, 1]
+            count += 1
+    p.touching[p.touching.shape[0] - 1, 0] = count
+    return count
+
+
+@kernel(inline=True)
+def touching_at_hand(x, p):
+    """Number of touching pairs in the list, which `accelerate` has made at these x, if it has been called at all."""
+    count = p.touching[p.touching.shape[0] - 1, 0]
+    return count if count >= 0 else set_touching(x, p)
+
+
+@kernel(inline=True)
+def touching_pair(x, p, i):
+    return pair_at(x, p.cols, p.touching[i, 0], p.touching[i, 1])
+
+
+@kernel(allocates=False)
+def accelerate(x, v, t, p, with_damping, f, a):
+    for i in range(set_touching(x, p)):
+        pair = touching_pair(x, p, i)
+        add_kick(a, p, pair, push_of(v, p, pair, depth_of(p, pair), with_damping))
 
 
 @kernel(allocates=False)
@@ -82,14 +102,11 @@ def damp_strands_kicked(x, v, a, mean, s, p, reverse):
     the distance follows u' = pull - b w u from its rate before the kick, w its mobility. The accelerations are those at
     x, so that the list of pairs is, too.
     """
-    n, count = p.cols, pairs_at_hand(x, p)
+    n, count = p.cols, touching_at_hand(x, p)
     for turn in range(count):
-        q = in_turn(turn, count, reverse)
-        if not pushes(p, q):
-            continue
-        pair = pair_number(x, p, q)
+        pair = touching_pair(x, p, in_turn(turn, count, reverse))
         depth, w = depth_of(p, pair), pair_mobility(p, pair)
-        if depth == 0.0 or w == 0.0:
+        if w == 0.0:
             continue
         kicked, most = rate_of(v, n, pair), p.contact_k * depth
         pull = rate_of(a, n, pair) if a.shape[0] > 0 else 0.0
@@ -118,14 +135,21 @@ def energy(x, t, p):
 
 
 @kernel(inline=True)
-def pinned_rate(v, p, a, s, pair):
-    """The part of the velocity of a place that pins give it, along the line between the places."""
-    n, w, rate = p.cols, p.inverse_masses, 0.0
+def pinned_velocity(v, p, a, s):
+    """The part of the velocity of a place on the link from point a that pins give it."""
+    n, w, ux, uy, uz = p.cols, p.inverse_masses, 0.0, 0.0, 0.0
     for e in range(2):
         j, part = a + e, s if e == 1 else 1.0 - s
         if w[j] == 0.0:
-            rate += part * (v[j] * pair.nx + v[n + j] * pair.ny + v[2 * n + j] * pair.nz)
-    return rate
+            ux, uy, uz = ux + part * v[j], uy + part * v[n + j], uz + part * v[2 * n + j]
+    return ux, uy, uz
+
+
+@kernel(inline=True)
+def pinned_rate(v, p, a, s, pair):
+    """The same along the line between the places."""
+    ux, uy, uz = pinned_velocity(v, p, a, s)
+    return ux * pair.nx + uy * pair.ny + uz * pair.nz
 
 
 @kernel(allocates=False)

@@ -82,6 +82,13 @@ class StepArrays(NamedTuple):
     between: NDArray[np.float64]  # (12,) those of a pair within a step: x, y, z of its four points
 
 
+class RubArrays(NamedTuple):
+    """Extra kernel data of chains that touch themselves, see `sim.springs.forces.strand_friction`."""
+
+    touching: NDArray[np.int64]  # (most + 1, 2): pairs of links that touch; their number in [-1, 0], -1: no list yet
+    rubs: NDArray[np.float64]  # (most, 13): their places and normals, and friction
+
+
 class CellArrays(NamedTuple):
     """Extra kernel data of cloths that touch themselves, see `sim.springs.points.near_cells`."""
 
@@ -112,7 +119,9 @@ class WideArrays(NamedTuple):
 
 # A chain that touches itself, a net of any families of links, and one of those of CLOTH. A kernel is compiled for each
 # of the four classes of arrays, with no more than nets of that class can need: numba tells them apart by their types.
-StrandArrays = namedtuple("StrandArrays", RopeArrays._fields + TouchArrays._fields + StepArrays._fields)
+StrandArrays = namedtuple(
+    "StrandArrays", RopeArrays._fields + TouchArrays._fields + StepArrays._fields + RubArrays._fields
+)
 GridArrays = namedtuple("GridArrays", RopeArrays._fields + TouchArrays._fields + WideArrays._fields)
 ClothArrays = namedtuple("ClothArrays", GridArrays._fields + StepArrays._fields + CellArrays._fields)
 

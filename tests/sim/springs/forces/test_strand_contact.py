@@ -187,11 +187,13 @@ def test_a_bounce_of_links_has_the_restitution_of_its_closed_form(name):
     assert after == pytest.approx(0.5 * restitution, rel=3e-3 if record.order == 1 else 1e-3)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.4])
 @pytest.mark.parametrize("damping", [0.0, 4.0])
-def test_leapfrog_is_of_second_order_while_links_touch(damping):
-    net = crossed(0.015, (0.3, 0.6), Contact(800.0, damping))
+def test_leapfrog_is_of_second_order_while_links_touch(damping, friction):
+    """And slide over each other."""
+    net = crossed(0.015, (0.3, 0.6), Contact(800.0, damping, friction))
     v0 = np.zeros_like(net.x0)
-    v0[:, 0, 4:] = np.array([[0.2, 0.1, -0.5], [-0.1, 0.3, -0.4]]).T
+    v0[:, 0, 4:] = np.array([[1.2, 0.6, -0.5], [0.9, 0.8, -0.4]]).T
     seconds = 0.015
     x, _ = exact(net, seconds, v0)
     errors = [np.abs(integrated(net, "leapfrog", seconds, count, v0).x - x).max() for count in (20, 40, 80)]
@@ -201,10 +203,11 @@ def test_leapfrog_is_of_second_order_while_links_touch(damping):
     assert errors[2] < 1e-6
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.4])
 @pytest.mark.parametrize("name", ["leapfrog", "rk4", "symplectic_euler", "dopri5"])
-def test_the_account_closes_while_a_pin_pushes_a_rope_onto_itself(name):
+def test_the_account_closes_while_a_pin_pushes_a_rope_onto_itself(name, friction):
     """Stored, dissipated and put in, to 1e-3 of the largest kinetic energy."""
-    net = crossed(-0.01, (0.4, 0.7), Contact(2000.0, 6.0))
+    net = crossed(-0.01, (0.4, 0.7), Contact(2000.0, 6.0, friction))
     path = PinPath(0.0, ((0.0, -0.28, 0.07), (0.05, 0.0, -0.6), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
     families = (net.families[0]._replace(stiffness=300.0, damping=1.0),)
     net = dataclasses.replace(net, pinned=frozenset({(0, 4)}), pin_paths=(((0, 4), path),), families=families)

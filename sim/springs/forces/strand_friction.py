@@ -1,0 +1,192 @@
+"""Coulomb's law between the strands of a chain that touches itself, solved in each step.
+
+Two places that touch get the tangential forces that stop them along each other against the sum of all other forces, at
+most mu N, as points do on a surface (`sim.springs.forces.friction`). A link may touch several others, so that all are
+solved together, pair by pair in sweeps to and fro (M. Jean 1999, The non-smooth contact dynamics method, section 5),
+until no force changes by more than SETTLED of its limit, or after SWEEPS.
+
+A chain has no torsion: the forces act at the nearest places of the links' axes, and the moment of their distance, which
+would twist the strands, is left out.
+"""
+
+import math
+
+from sim import point_laws
+from sim.jit import kernel
+from sim.springs.forces.link_contact import add_at
+from sim.springs.forces.record import Force
+from sim.springs.forces.strand_contact import depth_of, pair_mobility, pinned_velocity, push_of, touching_at_hand
+from sim.springs.points.arrays import StrandArrays
+from sim.springs.points.link_pairs import LinkPair, opening_of, pair_at
+from sim.springs.points.order import in_turn
+
+SWEEPS = 50  # at most
+SETTLED = 1e-6
+# Columns of p.rubs: the pair's places and normal as in `LinkPair`, mu N [N], its mobility [1/kg], the force on its
+# second link [N], and the impulse [N s].
+MOST, MOBILITY, FORCE_AT, IMPULSE_AT, COLUMNS = 5, 6, 7, 10, 13
+
+stopping = kernel(inline=True)(point_laws.stopping)
+
+
+@kernel(inline=True)
+def rubbing(p, i):
+    """Touching pair i, as `note` has seen it."""
+    r = p.rubs
+    return LinkPair(p.touching[i, 0], p.touching[i, 1], r[i, 0], r[i, 1], 0.0, r[i, 2], r[i, 3], r[i, 4])
+
+
+@kernel(allocates=False)
+def note(x, v, p):
+    """Note the touching pairs with the force mu N of each; returns their number."""
+    count = touching_at_hand(x, p)
+    for i in range(count):
+        pair, row = pair_at(x, p.cols, p.touching[i, 0], p.touching[i, 1]), p.rubs[i]
+        row[0], row[1], row[2], row[3], row[4] = pair.s, pair.t, pair.nx, pair.ny, pair.nz
+        row[MOST] = p.friction * push_of(v, p, pair, depth_of(p, pair), True)
+        row[MOBILITY] = pair_mobility(p, pair)
+    return count
+
+
+@kernel(inline=True)
+def along_surface(pair, u, v, w):
+    """The part of a vector across the normal of a pair."""
+    normal = u * pair.nx + v * pair.ny + w * pair.nz
+    return u - normal * pair.nx, v - normal * pair.ny, w - normal * pair.nz
+
+
+@kernel(inline=True)
+def change(out, p, i, pair, column, fx, fy, fz):
+    """Set the force, or impulse, on the second link of a pair, with what it adds to `out`.
+
+    Returns the square of its change over that of mu N.
+    """
+    n, w, row, most = p.cols, p.inverse_masses, p.rubs[i], p.rubs[i, MOST]
+    dx, dy, dz = fx - row[column], fy - row[column + 1], fz - row[column + 2]
+    row[column], row[column + 1], row[column + 2] = fx, fy, fz
+    add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a], dx, dy, dz)
+    add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1], dx, dy, dz)
+    add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b], dx, dy, dz)
+    add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1], dx, dy, dz)
+    return (dx * dx + dy * dy + dz * dz) / (most * most)
+
+
+@kernel(inline=True)
+def clear(p, count, column):
+    for i in range(count):
+        for k in range(column, column + 3):
+            p.rubs[i, k] = 0.0
+
+
+@kernel(allocates=False)
+def sweep_forces(v, p, count, reverse, a):
+    """One sweep of `accelerate`; returns the largest change of a force, as `change` does."""
+    n, largest = p.cols, 0.0
+    for turn in range(count):
+        i = in_turn(turn, count, reverse)
+        pair, w = rubbing(p, i), p.rubs[i, MOBILITY]
+        most = p.rubs[i, MOST]
+        if most == 0.0 or w == 0.0:
+            continue
+        u, q, r = opening_of(v, n, pair)
+        ax, ay, az = opening_of(a, n, pair)
+        fx, fy, fz = w * p.rubs[i, FORCE_AT], w * p.rubs[i, FORCE_AT + 1], w * p.rubs[i, FORCE_AT + 2]
+        sx, sy, sz, part = stopping(
+            pair.nx, pair.ny, pair.nz, u, q, r, ax - fx, ay - fy, az - fz, most * w, p.stop_rate
+        )
+        share = -part / w
+        largest = max(largest, change(a, p, i, pair, FORCE_AT, share * sx, share * sy, share * sz))
+    return largest
+
+
+@kernel(allocates=False)
+def accelerate(x, v, t, p, with_damping, f, a):
+    if not with_damping:
+        return
+    count = note(x, v, p)
+    clear(p, count, FORCE_AT)
+    for sweep in range(SWEEPS):
+        if sweep_forces(v, p, count, sweep % 2 == 1, a) <= SETTLED * SETTLED:
+            break
+
+
+@kernel(allocates=False)
+def foresee(x, v, t, p):
+    """Set the forces of pairs that slide at v, before a kick that `hold` ends."""
+    for i in range(note(x, v, p)):
+        pair, most, w = rubbing(p, i), p.rubs[i, MOST], p.rubs[i, MOBILITY]
+        u, q, r = opening_of(v, p.cols, pair)
+        tx, ty, tz = along_surface(pair, u, q, r)
+        speed = math.sqrt(tx * tx + ty * ty + tz * tz)
+        # Places that friction could stop in the kick may be at rest, where the direction of their motion is round-off.
+        over = -most / speed if p.stop_rate * speed > 0.5 * most * w else 0.0
+        p.rubs[i, FORCE_AT], p.rubs[i, FORCE_AT + 1], p.rubs[i, FORCE_AT + 2] = over * tx, over * ty, over * tz
+
+
+@kernel(allocates=False)
+def sweep_impulses(v, s, p, count, foreseen, reverse):
+    """One sweep of `hold`; returns the largest change of an impulse, as `change` does, over s^2."""
+    largest = 0.0
+    for turn in range(count):
+        i = in_turn(turn, count, reverse)
+        pair, w, row = rubbing(p, i), p.rubs[i, MOBILITY], p.rubs[i]
+        limit = s * row[MOST]
+        if limit == 0.0 or w == 0.0:
+            continue
+        u, q, r = opening_of(v, p.cols, pair)
+        jx, jy, jz = row[IMPULSE_AT], row[IMPULSE_AT + 1], row[IMPULSE_AT + 2]
+        tx, ty, tz = along_surface(pair, u - w * jx, q - w * jy, r - w * jz)
+        speed, fx, fy, fz = math.sqrt(tx * tx + ty * ty + tz * tz), row[FORCE_AT], row[FORCE_AT + 1], row[FORCE_AT + 2]
+        if speed > w * limit and foreseen and (fx != 0.0 or fy != 0.0 or fz != 0.0):
+            jx, jy, jz = s * fx, s * fy, s * fz
+        else:
+            over = -min(1.0 / w, limit / speed) if speed > 0.0 else 0.0
+            jx, jy, jz = over * tx, over * ty, over * tz
+        largest = max(largest, change(v, p, i, pair, IMPULSE_AT, jx, jy, jz) / (s * s))
+    return largest
+
+
+@kernel(inline=True)
+def pins_share(v, p, i, column):
+    """Product of a force, or impulse, of a pair and the motion that pins give its places: work that they put in."""
+    pair, row = rubbing(p, i), p.rubs[i]
+    ax, ay, az = pinned_velocity(v, p, pair.a, pair.s)
+    bx, by, bz = pinned_velocity(v, p, pair.b, pair.t)
+    return row[column] * (ax - bx) + row[column + 1] * (ay - by) + row[column + 2] * (az - bz)
+
+
+@kernel(allocates=False)
+def hold(x, v, t, s, p, foreseen):
+    """Friction for a time s, last in a kick, which stops places that it can stop. Returns the work of pins [J].
+
+    foreseen: of other places, the friction that `foresee` has set, for a kick that mirrors one without.
+    """
+    count = note(x, v, p)
+    clear(p, count, IMPULSE_AT)
+    for sweep in range(SWEEPS):
+        if sweep_impulses(v, s, p, count, foreseen, sweep % 2 == 1) <= SETTLED * SETTLED:
+            break
+    work = 0.0
+    if p.pins.shape[0] > 0:
+        for i in range(count):
+            work += pins_share(v, p, i, IMPULSE_AT)
+    return work
+
+
+@kernel(allocates=False)
+def power(x, v, t, p, with_damping):
+    """(dissipated, put in by moving pins) [W] by the forces that `accelerate` has last noted."""
+    dissipated = work = 0.0
+    if with_damping:
+        for i in range(touching_at_hand(x, p)):
+            u, q, r = opening_of(v, p.cols, rubbing(p, i))
+            row = p.rubs[i]
+            dissipated -= row[FORCE_AT] * u + row[FORCE_AT + 1] * q + row[FORCE_AT + 2] * r
+            work += pins_share(v, p, i, FORCE_AT)
+    return dissipated, work
+
+
+FORCE = Force(
+    "strand_friction", rank=990, nets=(StrandArrays,), acts="p.friction > 0.0 and not p.lab_contact",
+    accelerate=accelerate, foresee=foresee, hold=hold, power=power,
+)  # fmt: skip

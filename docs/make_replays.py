@@ -51,7 +51,7 @@ def page_of(scene: str, clip: Clip) -> str:
         rows += [row for _, row in loop.run.snapshots.pop_rows()]
         if loop.scene.time >= clip.start:
             recorder.note(loop.latest, wall)
-    return replay_html(kind, recorder.kept(), Plotted(rows, {}))
+    return replay_html(kind, recorder.all_frames(), Plotted(rows, {}))
 
 
 def main() -> None:

@@ -142,5 +142,5 @@ def shared_kernels() -> tuple[Path, ...]:
     """Folders of kernels for this processor and for its levels, in the order in which they are looked for."""
     levels = (f"{sys.platform}-{level}{VECTOR_LIBRARY}" for level in host_levels())
     names = dict.fromkeys([processor(), *levels])
-    found = (folder / "kernels" / name for folder in shared_folders() for name in names)
-    return tuple(folder for folder in found if folder.is_dir())
+    folders = (folder / "kernels" / name for folder in shared_folders() for name in names)
+    return tuple(folder for folder in folders if folder.is_dir())

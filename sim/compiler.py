@@ -64,10 +64,10 @@ class KernelFile(IndexDataCacheFile):
 
     def load(self, key: Any) -> Any:
         try:
-            kept = super().load(key)
-            if kept is None:
+            entry = super().load(key)
+            if entry is None:
                 return None
-            check_sum, data = kept
+            check_sum, data = entry
             return pickle.loads(data) if check_sum == zlib.crc32(data) else None
         except Exception:  # whatever unpickling leads to
             return None
@@ -336,8 +336,8 @@ class KernelCache(FunctionCache):
 def environments(module: Any) -> list[Any]:
     """The environments that the code of a module names."""
     names = (variable.name for variable in module.global_variables)
-    found = (lookup_environment(name) for name in names if name.startswith("_ZN08NumbaEnv"))
-    return [environment for environment in found if environment is not None]
+    candidates = (lookup_environment(name) for name in names if name.startswith("_ZN08NumbaEnv"))
+    return [environment for environment in candidates if environment is not None]
 
 
 class Kernel(CPUDispatcher):
@@ -532,10 +532,10 @@ def check(folder: Path) -> None:
     """
     pair, folders = Pair(1.0, 2.0), Folders(folder, ())
     for caller, expected in ((stored, 3.0), (doubled, 6.0), (stored, 3.0)):
-        kept = len(list(folder.glob(f"*{caller.__name__}*.nbc")))  # none on a full disk
+        file_count = len(list(folder.glob(f"*{caller.__name__}*.nbc")))  # none on a full disk
         callee = make_kernel(added, folders, {"nogil": True}, noalias=True, counts=False)
         function = FunctionType(caller.__code__, {**globals(), "added": choose({Pair: callee})})
         entry = make_kernel(function, folders, {"nogil": True}, noalias=False, counts=True)
         values = callee(pair), entry(pair), sum(entry.stats.cache_hits.values())
-        if values != (3.0, expected, kept):
-            raise RuntimeError(f"kernels give {values} instead of {(3.0, expected, kept)}")
+        if values != (3.0, expected, file_count):
+            raise RuntimeError(f"kernels give {values} instead of {(3.0, expected, file_count)}")

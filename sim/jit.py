@@ -94,7 +94,7 @@ def code_of(path: Path) -> str:
 
     By regular expressions, as Python's parser takes a second for all of ours.
     """
-    code = NO_CODE.sub(lambda found: found[1] or "\n", path.read_text("utf-8") + "\n")
+    code = NO_CODE.sub(lambda match: match[1] or "\n", path.read_text("utf-8") + "\n")
     return DOCSTRING.sub(r"\1", code)
 
 
@@ -102,14 +102,14 @@ def code_of(path: Path) -> str:
 def imported_files(path: Path) -> frozenset[Path]:
     """The files of the modules of ours that a source imports, by name or by `modules_of`."""
     text = code_of(path)
-    found = set(path.parent.glob("*.py")) if MODULES_OF.search(text) else set()
+    files = set(path.parent.glob("*.py")) if MODULES_OF.search(text) else set()
     for module, names, modules in IMPORT.findall(text):
         candidates = [name.split()[0] for name in modules.split(",") if name.strip()]
         if module:
             members = [name.split()[0] for name in names.strip("()").replace("\n", " ").split(",") if name.strip()]
             candidates = [module, *(f"{module}.{name}" for name in members)]
-        found.update(file for file in map(source_of, candidates) if file is not None)
-    return frozenset(found)
+        files.update(file for file in map(source_of, candidates) if file is not None)
+    return frozenset(files)
 
 
 def modules_of(package: str) -> list[ModuleType]:
@@ -125,15 +125,15 @@ def reachable_hash(*paths: Path) -> str:
 
     The versions of Python (without its patch release), numba and llvmlite count too.
     """
-    found, waiting = set(), list(paths)
+    sources, waiting = set(), list(paths)
     while waiting:
         path = waiting.pop()
-        if path not in found:
-            found.add(path)
+        if path not in sources:
+            sources.add(path)
             waiting.extend(imported_files(path))
     versions = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__
     digest = hashlib.sha256(repr(versions).encode())
-    for path in sorted(found):
+    for path in sorted(sources):
         digest.update(path.name.encode() if ROOT not in path.parents else path.relative_to(ROOT).as_posix().encode())
         digest.update(code_of(path).encode())
     return digest.hexdigest()[:16]

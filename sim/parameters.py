@@ -204,11 +204,11 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
 
 def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
     """The error for a name that is no parameter: it lists similar names, or all names."""
-    shown = name if name.isidentifier() and len(name) <= MAX_SHOWN_NAME else repr(name[:MAX_SHOWN_NAME])
+    text = name if name.isidentifier() and len(name) <= MAX_SHOWN_NAME else repr(name[:MAX_SHOWN_NAME])
     close = similar(name, known)
     if close:
-        return ValueError(f"{shown}: no such parameter; did you mean {' or '.join(close)}?")
-    return ValueError(f"{shown}: no such parameter; the parameters are {', '.join(known)}")
+        return ValueError(f"{text}: no such parameter; did you mean {' or '.join(close)}?")
+    return ValueError(f"{text}: no such parameter; the parameters are {', '.join(known)}")
 
 
 def similar(word: object, names: Iterable[str]) -> list[str]:

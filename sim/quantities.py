@@ -81,7 +81,7 @@ def measured(suffix: str, unit: str) -> Fraction | None:
 
 def written_plainly(text: str) -> str:
     """A number in characters of every keyboard: a plain minus, raised digits as powers, no gaps between groups."""
-    word = RAISED.sub(lambda found: "^" + found[0].translate(SUPERSCRIPTS), text.strip().translate(MINUS))
+    word = RAISED.sub(lambda match: "^" + match[0].translate(SUPERSCRIPTS), text.strip().translate(MINUS))
     return GROUP_GAP.sub("", word)
 
 

@@ -42,7 +42,7 @@ def written_plainly(text: str) -> str:
     text = re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)  # N-s
     text = re.sub(r"(?<=\d)(?=[A-Za-z])|[ .]+(?=[A-Za-z1])", "*", text)
     text = re.sub(r"(?<!^1)/(rad|deg)/(s|Hz)\b", r"/(\1/\2)", text)  # m2/rad/s: people mean m2/(rad/s)
-    return re.sub(r"[A-Za-z]+", lambda found: ALIASES.get(found[0], found[0]), text)
+    return re.sub(r"[A-Za-z]+", lambda match: ALIASES.get(match[0], match[0]), text)
 
 
 @functools.cache

@@ -74,11 +74,11 @@ class Refusals:
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
     """The form of every argument error, in one line: the name, the value given, and the allowed values."""
-    shown = repr(value) if isinstance(value, str) else " ".join(repr(value).split())  # in one line, arrays too
-    if len(shown) > (MAX_SHOWN_PATH if isinstance(value, str) and os.sep in value else MAX_SHOWN):
+    text = repr(value) if isinstance(value, str) else " ".join(repr(value).split())  # in one line, arrays too
+    if len(text) > (MAX_SHOWN_PATH if isinstance(value, str) and os.sep in value else MAX_SHOWN):
         is_record = dataclasses.is_dataclass(value) or hasattr(value, "_fields")
-        shown = f"{type(value).__name__}(...)" if is_record else f"{shown[:MAX_SHOWN]}..."
-    return ValueError(f"{name}: {shown} is not allowed; allowed: {allowed}")
+        text = f"{type(value).__name__}(...)" if is_record else f"{text[:MAX_SHOWN]}..."
+    return ValueError(f"{name}: {text} is not allowed; allowed: {allowed}")
 
 
 def unreadable(name: str, path: object, error: OSError) -> ValueError:

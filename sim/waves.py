@@ -82,11 +82,11 @@ class Waves:
     def __post_init__(self) -> None:
         check_kind("water", self.water, Water, "a Water")
         for name in ("kx", "ky", "amplitude", "phase", "omega"):
-            given = getattr(self, name)
-            if name == "omega" and given is None:
-                given = self.water.omega(self.k)
+            numbers = getattr(self, name)
+            if name == "omega" and numbers is None:
+                numbers = self.water.omega(self.k)
             allowed = "finite numbers of shape (n,), as many as of kx"
-            values = as_array(name, given, allowed)
+            values = as_array(name, numbers, allowed)
             object.__setattr__(self, name, read_only(values))
             if values.ndim != 1 or values.shape != self.kx.shape or not np.isfinite(values).all():
                 raise argument_error(name, values if values.ndim == 1 else values.shape, allowed)
@@ -111,11 +111,11 @@ class Waves:
         if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number of at least 1")
         order = np.argsort(-self.amplitude, kind="stable")
-        kept, left = order[:count], order[count:]
+        highest, left = order[:count], order[count:]
         squares = 0.5 * np.square(self.amplitude[left])
         return dataclasses.replace(
             self,
-            **{name: getattr(self, name)[kept] for name in ("kx", "ky", "amplitude", "omega", "phase")},
+            **{name: getattr(self, name)[highest] for name in ("kx", "ky", "amplitude", "omega", "phase")},
             elevation_error=math.sqrt(self.elevation_error**2 + float(squares.sum())),
             velocity_error=math.sqrt(self.velocity_error**2 + float((squares * self.omega[left] ** 2).sum())),
         )
@@ -141,8 +141,8 @@ class Waves:
         def excess(s: float) -> float:
             return float((self.amplitude * np.cos(turned(s))).sum()) - height
 
-        found = turned(narrowed(excess, -MAX_TURN, MAX_TURN, TURN_RESOLUTION)[1])
-        return dataclasses.replace(self, phase=self.phase - theta + found)
+        angles = turned(narrowed(excess, -MAX_TURN, MAX_TURN, TURN_RESOLUTION)[1])
+        return dataclasses.replace(self, phase=self.phase - theta + angles)
 
     @functools.cached_property
     def table(self) -> np.ndarray:
@@ -160,9 +160,9 @@ class Waves:
         """Height (n,) [m] of the linear surface above points (n, 2) [m] at time t [s]. Raises ValueError for points of
         another shape or not finite."""
         where = check_positions("points", points)
-        found = np.empty(len(where))
-        set_elevation(where, check_number("t", t, "s"), self.table, found)
-        return found
+        elevation = np.empty(len(where))
+        set_elevation(where, check_number("t", t, "s"), self.table, elevation)
+        return elevation
 
     def response(self, points: ArrayLike, t: float, X: ArrayLike) -> np.ndarray:
         """Sum of a Re(X exp(i theta)) over the waves, (n, 6), at points (n, 2) [m] at time t [s]; X (waves, 6) complex.
@@ -172,10 +172,10 @@ class Waves:
         where, factors = check_positions("points", points), np.asarray(X, complex)
         if factors.shape != (len(self.kx), RESPONSES) or not np.isfinite(factors).all():
             raise argument_error("X", factors.shape, f"finite numbers of shape ({len(self.kx)}, {RESPONSES})")
-        found = np.empty((len(where), RESPONSES))
+        response = np.empty((len(where), RESPONSES))
         rows = np.concatenate([np.real(factors).T, np.imag(factors).T])[None]
-        set_response(where, check_number("t", t, "s"), self.table, np.ascontiguousarray(rows), found)
-        return found
+        set_response(where, check_number("t", t, "s"), self.table, np.ascontiguousarray(rows), response)
+        return response
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, at time t [s].

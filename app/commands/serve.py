@@ -240,7 +240,7 @@ class SetupSaver:
 
     def __init__(self, opening: Opening) -> None:
         self.opening = opening
-        self.kept: object = None
+        self.last_setup: object = None
 
     def store(self) -> None:
         """Store the set-up, if it has changed and can be written."""
@@ -252,7 +252,7 @@ class SetupSaver:
 
         settings = viewer.current.settings
         setup = settings.kind, settings.params, settings.loaded
-        if setup != self.kept:
+        if setup != self.last_setup:
             with contextlib.suppress(OSError):
                 keep_last(write_query(*setup))
-            self.kept = setup
+            self.last_setup = setup

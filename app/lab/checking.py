@@ -11,7 +11,7 @@ Beside the reference solution, such a file has
 - `TERMS` and `GROUPS`, tuples of `Term` and `Group` (`diagnosis/terms.py`): what the result adds up.
 - `adds_up(student, *arguments)`: whether it does so for these arguments; without it, for all.
 - `within(form)`: the functions that a form of what the result adds up may be part of.
-- `contrast(found, right, *arguments)`: a sentence on the difference of two results, or "".
+- `contrast(result, right, *arguments)`: a sentence on the difference of two results, or "".
 - `CONSTANT`: a sentence for a result that is right except for a constant that is slightly off.
 - `CASES`, a tuple of `Case` (`diagnosis/differences.py`): special cases, in which alone a function may be wrong.
 - `normalise(result)`: brings results that mean the same to one form, for example a list in any order.

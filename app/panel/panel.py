@@ -135,7 +135,7 @@ class Panel:
         rows: new plot rows. busy: [s] that the present tick has taken.
         """
         now = time.monotonic()
-        frame = self.recorder.shown
+        frame = self.recorder.shown_frame
         self.plots.update(snapshot, rows, None if frame is None else frame.time)
         visitors = len(self.server.get_clients())
         hidden = frozenset[str]() if self.workbook is None else self.workbook.hidden()

@@ -57,7 +57,7 @@ class Plots:
         self.sent_curves: dict[str, tuple[object, object]] = {}  # the columns that each curve shows, and the kept ones
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
-        self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
+        self.earlier_rows: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
         self.curves: Mapping[str, Chart | Columns] = {}  # the last complete charts of the scene
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
         self.has_begun = False  # parameters have been read: charts that open from now on were requested
@@ -69,10 +69,10 @@ class Plots:
 
         Returns the time [s] of the last kept row; None without any.
         """
-        self.kept = tuple(self.rows) if on else ()
+        self.earlier_rows = tuple(self.rows) if on else ()
         self.kept_curves = self.curves if on else {}
         ends = [chart.columns[0][-1] for chart in self.kept_curves.values() if isinstance(chart, Chart)]
-        return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
+        return self.earlier_rows[-1][0] if self.earlier_rows else max(map(float, ends), default=None)
 
     def plotted(self) -> Plotted:
         """The kept rows, and the present complete charts."""
@@ -147,7 +147,7 @@ class Plots:
 
     def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
         """Send the open charts over time whose rows are out of date."""
-        present_rows, earlier_rows = self.rows_about(moment), self.kept
+        present_rows, earlier_rows = self.rows_about(moment), self.earlier_rows
         ends = (present_rows[0], present_rows[-1], earlier_rows) if present_rows else (earlier_rows,)
         behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
         if not behind:

@@ -15,9 +15,9 @@ def copied(values: Mapping[str, Any], *shared: object) -> dict[str, Any]:
     return copy.deepcopy(dict(values), {id(one): one for one in shared})
 
 
-def restore(scene: object, kept: object) -> None:
-    """Give a scene the attributes that `copied` kept of it, in copies of their own."""
-    vars(scene).update(copied(cast(dict[str, Any], kept)))
+def restore(scene: object, checkpoint: object) -> None:
+    """Give a scene the attributes in a checkpoint of `copied`, in copies of their own."""
+    vars(scene).update(copied(cast(dict[str, Any], checkpoint)))
 
 
 def arrays_in(value: object) -> dict[int, int]:

@@ -378,12 +378,12 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     return setup._replace(camera=camera, name=name, note=note, files=files, changes=changes)
 
 
-def read_changes(what: str, given: object) -> Changes:
+def read_changes(what: str, value: object) -> Changes:
     """The changes of a file as JSON holds them. Raises ValueError."""
-    if not isinstance(given, list) or len(given) > MOST_CHANGES:
-        raise argument_error(what, shortened(str(given)), f"a list of at most {MOST_CHANGES} changes")
+    if not isinstance(value, list) or len(value) > MOST_CHANGES:
+        raise argument_error(what, shortened(str(value)), f"a list of at most {MOST_CHANGES} changes")
     changes: list[tuple[str, str, float]] = []
-    for one in given:
+    for one in value:
         if not (
             isinstance(one, list)
             and len(one) == 3

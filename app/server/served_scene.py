@@ -100,7 +100,7 @@ class ServedScene:
         """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: RecordedFrame | None = None  # the shown frame of the recording
-        self.shown = self.drawn = 0  # serial of the shown snapshot; number of shown snapshots
+        self.shown_serial = self.drawn = 0  # serial of the shown snapshot; number of shown snapshots
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
@@ -169,15 +169,15 @@ class ServedScene:
         now = time.monotonic()
         self.attempt("recording could not go on", lambda: recorder.follow(snapshot))
         self.attempt("recording could not go on", lambda: recorder.advance(now))
-        recorded = recorder.shown
+        recorded = recorder.shown_frame
         with self.transport.counted():
             if recorded is not None:
                 if recorded is not self.recorded:
                     self.drawn += 1
                     self.attempt("picture could not be drawn", lambda: self.view.show(recorded.frame))
-                self.shown = 0  # the present is redrawn after it
-            elif snapshot.serial != self.shown:
-                self.shown = snapshot.serial
+                self.shown_serial = 0  # the present is redrawn after it
+            elif snapshot.serial != self.shown_serial:
+                self.shown_serial = snapshot.serial
                 self.drawn += 1
                 self.attempt("picture could not be drawn", lambda: self.view.show(snapshot.frame))
                 self.cameras.update(snapshot, self.settings.placing)  # another scene size moves cameras

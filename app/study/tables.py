@@ -56,14 +56,14 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
     return paths
 
 
-def write_results(found: dict[str, Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
+def write_results(rows_by_name: dict[str, Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
     """Write tables and their figures to a folder; figures only if matplotlib is installed."""
-    for title, rows in found.items():
+    for title, rows in rows_by_name.items():
         save_table(rows, out / f"{title}.csv")
     try:
         save_figures(figures(), out)
     except ModuleNotFoundError as missing:
-        print(f"no figures of {', '.join(found)}: {missing.name} is not installed (pip install '.[plot]')")
+        print(f"no figures of {', '.join(rows_by_name)}: {missing.name} is not installed (pip install '.[plot]')")
 
 
 def keep_machine(out: Path) -> None:

@@ -177,9 +177,9 @@ def of_text(text: str, path: Path, size: int) -> Seen:
     if NEMOH.match(text):
         return Seen("mesh", "a mesh (NEMOH)")
     if size <= MAX_WHOLE and re.search(r"(?m)^\s*[\w\"-]+\s*=\s*\S", text):
-        found = of_toml(path)
-        if found.kind:
-            return found
+        toml = of_toml(path)
+        if toml.kind:
+            return toml
     if PYTHON.search(text):
         return Seen("program", "a Python program")
     if len(IN_COMMENTS.findall(text)) >= 2 and "," in text:

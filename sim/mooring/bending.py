@@ -44,10 +44,10 @@ def bending_entries(p: LineArrays) -> tuple[NDArray[np.int64], NDArray[np.int64]
 
 def bending_forces(x: Array, p: LineArrays) -> Array:
     """Forces (nodes, 3) [N] of all bends at positions x (3, n)."""
-    found = np.zeros((p.nodes, 3))
+    forces = np.zeros((p.nodes, 3))
     nodes, weights = p.bends[:, NODES:WEIGHTS].astype(np.int64), p.bends[:, WEIGHTS:BEND_STIFFNESS]
     d = np.einsum("ie,die->id", weights, x[:, nodes]) + p.bends[:, OFFSET:LINKS]
     pull = -p.bends[:, BEND_STIFFNESS, None] * d
     for e in range(3):
-        np.add.at(found, nodes[:, e], weights[:, e, None] * pull)
-    return found
+        np.add.at(forces, nodes[:, e], weights[:, e, None] * pull)
+    return forces

@@ -50,17 +50,17 @@ class Elastic:
         length, slope = self.on_pieces(tension, self.rest + tension / self.stiffness, 1)
         return length, slope
 
-    def on_pieces(self, value: Array, found: Array, column: int) -> tuple[Array, Array]:
-        """`found` of links with a constant stiffness, with the table's numbers for `value` of all others.
+    def on_pieces(self, value: Array, result: Array, column: int) -> tuple[Array, Array]:
+        """`result` of links with a constant stiffness, with the table's numbers for `value` of all others.
 
         column: of the table, to which `value` belongs. The second array: derivatives [N/m] of the tensions.
         """
         slope = self.stiffness.copy()
         for at, *columns in self.groups:
-            given, other = columns[column], columns[1 - column]
-            i = np.clip(np.searchsorted(given, value[at], side="left") - 1, 0, len(given) - 2)
-            rise = (other[i + 1] - other[i]) / (given[i + 1] - given[i])
-            of_piece = other[i] + rise * (value[at] - given[i])
-            found[at] = of_piece if column == 0 else self.rest[at] * (1.0 + of_piece)
+            own, other = columns[column], columns[1 - column]
+            i = np.clip(np.searchsorted(own, value[at], side="left") - 1, 0, len(own) - 2)
+            rise = (other[i + 1] - other[i]) / (own[i + 1] - own[i])
+            of_piece = other[i] + rise * (value[at] - own[i])
+            result[at] = of_piece if column == 0 else self.rest[at] * (1.0 + of_piece)
             slope[at] = (rise if column == 0 else 1.0 / rise) / self.rest[at]
-        return found, slope
+        return result, slope

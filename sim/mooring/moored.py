@@ -35,8 +35,8 @@ def moored(
         check_water_depth("waves", body.hull, waves.water.depth)
         if water is not None and not waves.water.is_same(water):
             raise argument_error("waves", f"waves on {waves.water}", f"those on the body's {water}")
-    given = waves.water if water is None and waves is not None else water
-    own = upright_body(body, None, given)
+    body_water = waves.water if water is None and waves is not None else water
+    own = upright_body(body, None, body_water)
     C = own.stiffness.copy()
     for e, of in ((0, 2), (1, 2), (5, 3)):
         C[e, e] += HELD * C[of, of]

@@ -258,9 +258,9 @@ def run_mooring(
             "lines may bound a motion that grows, and its tensions are wrong then"
         )
         warnings.warn(text, ApproximationWarning, stacklevel=3)
-    kept = MooringFrames(system, motion, record, t, h, start, with_account)
-    done = run_frames(kept, len(t), progress)
-    return kept.run(None if done == len(t) else float(kept.t[done]))
+    history = MooringFrames(system, motion, record, t, h, start, with_account)
+    done = run_frames(history, len(t), progress)
+    return history.run(None if done == len(t) else float(history.t[done]))
 
 
 SIMULATED[System] = Simulated(run_mooring, 10.0, 101, "leapfrog", ("motion", "start"))

@@ -103,12 +103,12 @@ class MooringParts(PointSystem[MooringRun]):
     @functools.cached_property
     def nodes_of(self) -> dict[int, NDArray[np.int64]]:
         """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
-        index, found, used = self.node_of_point, {}, len(self.points)
+        index, nodes, used = self.node_of_point, {}, len(self.points)
         for line in self.lines:
             inner = np.arange(used, used + line.segments - 1)
-            found[line.id] = np.concatenate(([index[line.start]], inner, [index[line.end]])).astype(np.int64)
+            nodes[line.id] = np.concatenate(([index[line.start]], inner, [index[line.end]])).astype(np.int64)
             used += line.segments - 1
-        return found
+        return nodes
 
     @functools.cached_property
     def links_of(self) -> dict[int, slice]:

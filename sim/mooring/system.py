@@ -258,9 +258,9 @@ class System(MooringParts):
         free = np.zeros(len(mass), dtype=bool)
         free[: self.node_count] = True
         free[: len(self.points)] = [point.kind == "free" for point in self.points]
-        found = np.zeros(len(mass))
-        found[free] = 1.0 / np.maximum(mass[free], 1e-12)
-        return found
+        inverse = np.zeros(len(mass))
+        inverse[free] = 1.0 / np.maximum(mass[free], 1e-12)
+        return inverse
 
     def body_rows(self, mass: NDArray[np.float64]) -> tuple[Any, Any, Any]:
         """`carried`, `arms` and `bodies` of the kernels' view; a body's mass includes its fairleads' nodes."""
@@ -297,23 +297,23 @@ class System(MooringParts):
 
 def loads_on(points: Sequence[Point], n: int) -> NDArray[np.float64]:
     """Steady force (n, 3) [N] on each of the kernels' points, `points` first; (0, 3) without any."""
-    found = np.zeros((n if any(any(point.force) for point in points) else 0, 3))
-    if len(found):
+    loads = np.zeros((n if any(any(point.force) for point in points) else 0, 3))
+    if len(loads):
         for i, point in enumerate(points):
-            found[i] = point.force
-    return found
+            loads[i] = point.force
+    return loads
 
 
 def excitations(bodies: Sequence[MooredBody], waves: int) -> NDArray[np.float64]:
     """`excitation` of the kernels' view, for a number of waves; empty if no wave pushes a body."""
     if all(body.excitation is None for body in bodies):
         return np.zeros((len(bodies), 12, 0))
-    found = np.zeros((len(bodies), 12, waves))
+    forces = np.zeros((len(bodies), 12, waves))
     for b, body in enumerate(bodies):
         if body.excitation is not None:
             X = np.asarray(body.excitation).T
-            found[b] = np.concatenate((X.real, X.imag))
-    return found
+            forces[b] = np.concatenate((X.real, X.imag))
+    return forces
 
 
 def link_tables(system: System, curves: Curves) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

@@ -73,9 +73,11 @@ def declared_stiffness(x: Array, p: LineArrays) -> Array:
         return np.zeros((p.nodes, 3, 3))
     units = np.zeros((3, 3, p.cols))
     units[np.arange(3), np.arange(3), : p.nodes] = 1.0
-    found = np.empty_like(units)
-    set_tangents(np.ascontiguousarray(x).reshape(-1), units.reshape(3, -1), others(p), STIFFNESS, found.reshape(3, -1))
-    return np.ascontiguousarray(found[:, :, : p.nodes].T)
+    tangents = np.empty_like(units)
+    set_tangents(
+        np.ascontiguousarray(x).reshape(-1), units.reshape(3, -1), others(p), STIFFNESS, tangents.reshape(3, -1)
+    )
+    return np.ascontiguousarray(tangents[:, :, : p.nodes].T)
 
 
 def moves_on_free(forces: Array, p: LineArrays) -> Array:
@@ -87,11 +89,11 @@ def moves_on_free(forces: Array, p: LineArrays) -> Array:
 
 def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
     """Forces (3, nodes) on all nodes in free coordinates, with the bodies' own stiffness and steady forces."""
-    found = moves_on_free(forces, p)
-    six = found[len(found) - 6 * len(p.bodies) :]
+    free_forces = moves_on_free(forces, p)
+    six = free_forces[len(free_forces) - 6 * len(p.bodies) :]
     for b, row in enumerate(p.bodies):
         six[6 * b : 6 * b + 6] += p.steady[b] - row[OF_BODY : OF_BODY + 36].reshape(6, 6) @ six_of(x, p, b)
-    return found
+    return free_forces
 
 
 def moved(x: Array, step: Array, p: LineArrays) -> Array:

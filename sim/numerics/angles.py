@@ -22,8 +22,8 @@ def direction_of(east: float, north: float, total: float) -> float:
 
 def within_turn(angle: ArrayLike) -> np.ndarray:
     """Angles [rad] brought to [0, 2 pi). Those that are a whole number of turns are 0, also if they were rounded."""
-    found = np.mod(angle, 2.0 * math.pi)
-    return np.where(found > 2.0 * math.pi - ROUNDING, 0.0, found)
+    remainder = np.mod(angle, 2.0 * math.pi)
+    return np.where(remainder > 2.0 * math.pi - ROUNDING, 0.0, remainder)
 
 
 def within_half_turn(angle: ArrayLike) -> np.ndarray:

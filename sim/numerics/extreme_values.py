@@ -73,11 +73,11 @@ class Peaks:
 
     def expected_largest(self, duration: float) -> Array:
         """Largest value of each (count,) that is expected in `duration` [s]; NaN for too few peaks."""
-        found = np.full(len(self.peaks), math.nan)
+        largest = np.full(len(self.peaks), math.nan)
         for i, peaks in enumerate(self.peaks):
             heights = np.array(peaks) - self.mean[i]
             heights = heights[heights > 0.0]
             if len(heights) >= LEAST_PEAKS:
                 rate = len(heights) / self.duration
-                found[i] = self.mean[i] + expected_largest(heights, rate * duration)
-        return found
+                largest[i] = self.mean[i] + expected_largest(heights, rate * duration)
+        return largest

@@ -187,16 +187,16 @@ def viscous_two_layer(
     w, rate = np.zeros_like(k), np.zeros_like(k)
     moving = k > 0.0
     if moving.any():
-        found = k[moving]
+        wavenumbers = k[moving]
         layers = Layers(
-            found,
+            wavenumbers,
             upper_density,
             upper_viscosity,
             thickness,
             lower_density,
             lower_viscosity,
             G1[moving],
-            (lower_density - upper_density) * gravity + interface_tension * found**2,
+            (lower_density - upper_density) * gravity + interface_tension * wavenumbers**2,
             np.sqrt(X_surface[moving]),
             np.sqrt(X_interface[moving]),
         )

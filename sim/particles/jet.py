@@ -59,7 +59,7 @@ class Jet:
         self.hits = 0
         self.ejected = self.fed = 0.0  # [m3]
         self._due = self._waiting = 0.0
-        self._found = np.empty((count, 7))
+        self._rows = np.empty((count, 7))
 
     @property
     def in_flight(self) -> float:
@@ -75,10 +75,10 @@ class Jet:
         fly(self.position, self.velocity, self.flying, dt, self.gravity, self.drag_time, *self.wind)
         self._emit(dt)
         m = height.shape[0]
-        found = land(self.position, self.velocity, self.flying, self.volume, dt, np.asarray(height, np.float64),
-                     float(origin[0]), float(origin[1]), float(cell), float(m - 1), self._found)  # fmt: skip
-        rows = self._found[:found]
-        self.hits += found
+        count = land(self.position, self.velocity, self.flying, self.volume, dt, np.asarray(height, np.float64),
+                     float(origin[0]), float(origin[1]), float(cell), float(m - 1), self._rows)  # fmt: skip
+        rows = self._rows[:count]
+        self.hits += count
         self.fed += float(rows[:, 6].sum())
         return Landed(rows[:, :3].copy(), rows[:, 3:6].copy(), rows[:, 6].copy())
 
@@ -141,8 +141,8 @@ def emit(position, velocity, flying, free, serial, dt, gravity, tau, spread, win
 
 
 @kernel
-def land(position, velocity, flying, volume, dt, height, x0, y0, cell, last, found):
-    """Land parcels under the surface: set found[m] to place, velocity and volume at the hit; return their number m."""
+def land(position, velocity, flying, volume, dt, height, x0, y0, cell, last, rows):
+    """Land parcels under the surface: set rows[m] to place, velocity and volume at the hit; return their number m."""
     count = 0
     for i in range(flying.size):
         if not flying[i]:
@@ -156,9 +156,9 @@ def land(position, velocity, flying, volume, dt, height, x0, y0, cell, last, fou
         fall = max(-velocity[2, i], 1e-6)
         back = min(-below / fall, dt)
         for c in range(3):
-            found[count, c] = position[c, i] - back * velocity[c, i]
-            found[count, 3 + c] = velocity[c, i]
-        found[count, 6] = volume[i]
+            rows[count, c] = position[c, i] - back * velocity[c, i]
+            rows[count, 3 + c] = velocity[c, i]
+        rows[count, 6] = volume[i]
         flying[i] = False
         count += 1
     return count

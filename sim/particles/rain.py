@@ -116,7 +116,7 @@ class Rain:
         self.diameter = self._draw(self._by_volume, drawn)
         self.speed = terminal_speed(self.diameter, gravity)
         self._gap = np.full(drawn, np.nan)  # [m] height above the surface at the end of the last step
-        self._found = np.empty((drawn, 6))
+        self._rows = np.empty((drawn, 6))
 
     @property
     def fallen(self) -> float:
@@ -134,11 +134,11 @@ class Rain:
             displacement = np.zeros((1, 1, 2), height.dtype)
         moved = fall(
             self.position, self.speed, self._gap, self.wind, float(dt), self.length, self.ceiling,
-            float(height.max()), height, displacement[..., 0], displacement[..., 1], self._found,
+            float(height.max()), height, displacement[..., 0], displacement[..., 1], self._rows,
         )  # fmt: skip
-        found = self._found[:moved].copy()
-        which = found[:, 0].astype(np.int64)
-        hits = Hits(found[:, 1:4], found[:, 4:6], self.diameter[which], self.speed[which])
+        rows = self._rows[:moved].copy()
+        which = rows[:, 0].astype(np.int64)
+        hits = Hits(rows[:, 1:4], rows[:, 4:6], self.diameter[which], self.speed[which])
         self.hits += moved
         self.diameter[which] = self._draw(self._by_flux, moved)
         self.speed[which] = terminal_speed(self.diameter[which], self.gravity)
@@ -185,7 +185,7 @@ def bilinear(field, u, v):
 
 
 @kernel
-def fall(x, speed, gap, wind, dt, length, ceiling, crest, h, dx, dy, found):
+def fall(x, speed, gap, wind, dt, length, ceiling, crest, h, dx, dy, rows):
     """Move all drops by dt; write (index, x, y, z, label x, label y) of each that met the surface; return how many.
 
     crest: highest point of h; a drop that cannot reach it within the next step is not compared with the surface.
@@ -214,10 +214,10 @@ def fall(x, speed, gap, wind, dt, length, ceiling, crest, h, dx, dy, found):
             continue
         # Relative height falls evenly from gap to below: it was 0 the share `back` of the step ago.
         back = -below / (gap[d] - below)
-        found[count, 0] = d
-        found[count, 1] = x[0, d] - back * wind[0] * dt
-        found[count, 2] = x[1, d] - back * wind[1] * dt
-        found[count, 3] = x[2, d] - below
-        found[count, 4], found[count, 5] = a, b
+        rows[count, 0] = d
+        rows[count, 1] = x[0, d] - back * wind[0] * dt
+        rows[count, 2] = x[1, d] - back * wind[1] * dt
+        rows[count, 3] = x[2, d] - below
+        rows[count, 4], rows[count, 5] = a, b
         count += 1
     return count

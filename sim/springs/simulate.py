@@ -104,9 +104,9 @@ def simulate(
     """
     check_system(system)
     how = next(SIMULATED[kind] for kind in type(system).__mro__ if kind in SIMULATED)
-    given = {"x": x, "v": v, "rtol": rtol, "atol": atol, "motion": motion, "start": start}
-    given = {name: value for name, value in given.items() if value is not None}
-    for name, value in given.items():
+    options = {"x": x, "v": v, "rtol": rtol, "atol": atol, "motion": motion, "start": start}
+    options = {name: value for name, value in options.items() if value is not None}
+    for name, value in options.items():
         if name not in how.options:
             has = " and ".join((", ".join(how.options[:-1]), how.options[-1]))
             raise argument_error(name, value, f"None, as a {type(system).__name__} has {has} instead")
@@ -114,7 +114,7 @@ def simulate(
     t = frame_times(duration, how.frames if frames is None else frames, step, progress)
     check_kind("with_account", with_account, bool, "True or False")
     run = how.run(
-        system, t, step, how.integrator if integrator is None else integrator, with_account, progress, **given
+        system, t, step, how.integrator if integrator is None else integrator, with_account, progress, **options
     )
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
     if run.unsettled > 0:
@@ -193,20 +193,20 @@ SIMULATED[Net] = Simulated(run_net, 2.0, 61, "rk4", ("x", "v", "rtol", "atol", "
 def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDArray[np.float64]]:
     """The net with the positions x, and the velocities v (3, rows, cols), of `simulate`'s arguments."""
     shape = (net.shape[1], 3) if net.is_rope else (*net.shape, 3)
-    found = {"x": net.x0, "v": np.zeros_like(net.x0)}
-    for name, given in (("x", x), ("v", v)):
-        if given is None:
+    arrays = {"x": net.x0, "v": np.zeros_like(net.x0)}
+    for name, values in (("x", x), ("v", v)):
+        if values is None:
             continue
-        array = as_array(name, given, f"numbers of shape {shape}")
+        array = as_array(name, values, f"numbers of shape {shape}")
         if array.shape != shape:
             raise argument_error(name, array.shape, f"finite numbers of shape {shape}")
         if not np.isfinite(array).all():
             raise argument_error(name, float(array[~np.isfinite(array)][0]), f"finite numbers of shape {shape}")
-        found[name] = np.ascontiguousarray(np.moveaxis(array, -1, 0).reshape(3, *net.shape), dtype=np.float64)
+        arrays[name] = np.ascontiguousarray(np.moveaxis(array, -1, 0).reshape(3, *net.shape), dtype=np.float64)
     if v is not None:
         for i, j in net.pinned:
-            found["v"][:, i, j] = 0.0
-    return net if x is None else dataclasses.replace(net, x0=found["x"]), found["v"]
+            arrays["v"][:, i, j] = 0.0
+    return net if x is None else dataclasses.replace(net, x0=arrays["x"]), arrays["v"]
 
 
 def default_step(net: Net, record: Integrator) -> float:
@@ -271,17 +271,17 @@ def stepped(
 ) -> Run:
     """The run at times `t` [s] since the state's, which is advanced in equal steps of at most `step` [s]."""
     evals, unsettled = state.force_evals, state.unsettled
-    kept = NetFrames(net, state, record, t, step, with_account)
-    done = run_frames(kept, len(t), progress)
-    diverged_at = None if done == len(t) else kept.end_at_divergence(done)
+    history = NetFrames(net, state, record, t, step, with_account)
+    done = run_frames(history, len(t), progress)
+    diverged_at = None if done == len(t) else history.end_at_divergence(done)
     return Run(
-        kept.t,
-        per_point(net, kept.x),
-        per_point(net, kept.v),
-        energy_history(kept.ledger, with_account or is_closed(net)),
+        history.t,
+        per_point(net, history.x),
+        per_point(net, history.v),
+        energy_history(history.ledger, with_account or is_closed(net)),
         state.force_evals - evals,
         diverged_at,
-        kept.h,
+        history.h,
         record.name,
         state.left_out,
         state.unsettled - unsettled,

@@ -261,12 +261,12 @@ def stiff_vectors(
     are damped less.
     """
     values, vectors, basis = ritz(x, start, t, p, STIFFEST)
-    found = vectors.T @ basis
+    modes = vectors.T @ basis
     if not isinstance(p, LineArrays):
-        stiffness, _, rate, _ = quotients(x, found[-1], t, p)
+        stiffness, _, rate, _ = quotients(x, modes[-1], t, p)
         if rate * rate < 4.0 * DAMPED * DAMPED * stiffness:
-            return found[-1], []
-    return found[-1], [u for u, value in zip(found[:-1], values, strict=False) if value > STIFF * values[-1]]
+            return modes[-1], []
+    return modes[-1], [u for u, value in zip(modes[:-1], values, strict=False) if value > STIFF * values[-1]]
 
 
 def mixed_vectors(
@@ -282,14 +282,14 @@ def mixed_vectors(
     if stiffness <= 0.0 or rate <= 0.0 or abs(stiffest @ damped) > SAME:
         return []
     both = stiffest + damped
-    found = [top_vector(x, both / np.linalg.norm(both), t, p, DAMPING, rate / stiffness)]
+    vectors = [top_vector(x, both / np.linalg.norm(both), t, p, DAMPING, rate / stiffness)]
     for _ in range(ROUNDS):
         stiffness, _, rate, _ = quotients(x, damped, t, p)
         root = 0.5 * rate + math.sqrt(max(0.25 * rate * rate - stiffness, 0.0))
         if root <= 0.0:
             break
         damped = top_vector(x, damped, t, p, DAMPING, -1.0 / root)
-    return [*found, damped]
+    return [*vectors, damped]
 
 
 def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64] | None:
@@ -302,14 +302,14 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
     if not begin.any():
         return None
     values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFEST)
-    found, largest = None, 0.0
+    vector, largest = None, 0.0
     for value, mode in zip(values[::-1], vectors.T[::-1] @ basis, strict=True):
         if value <= largest:
             break  # no mode slides by more than all of it
         slides = value * quotients(x, mode, t, p)[3]
         if slides > largest:
-            found, largest = mode, slides
-    return found
+            vector, largest = mode, slides
+    return vector
 
 
 def is_damped_anywhere(system: PointSystem, p: Any) -> bool:
@@ -350,12 +350,12 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
         slides = sliding_vector(flat, start, t, p)
         if slides is not None:
             vectors.append(slides)
-    found = [quotients(flat, u, t, p) for u in vectors + mixed]
+    properties = [quotients(flat, u, t, p) for u in vectors + mixed]
     # Across slack links the stiffness is only round-off: no frequency is better than a wrong one.
-    floor = 1e-12 * abs(found[0][0])
+    floor = 1e-12 * abs(properties[0][0])
     return [
         Mode(stiffness if stiffness > floor else 0.0, links, rate, sliding, i >= len(vectors))
-        for i, (stiffness, links, rate, sliding) in enumerate(found)
+        for i, (stiffness, links, rate, sliding) in enumerate(properties)
     ]
 
 
@@ -519,12 +519,12 @@ def critical_stiffness(
     for _ in range(3):
         if modes is None:
             modes = modes_at(net.with_stiffness(scale * stiffest), state)
-        found = largest_scale(modes, record, h)
-        scale *= found
+        factor = largest_scale(modes, record, h)
+        scale *= factor
         # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: repeat
         # from the new ones.
         alike = all(math.isclose(mode.links, mode.stiffness) and not mode.mixed for mode in modes)
-        if scale == 0.0 or math.isinf(scale) or alike or math.isclose(found, 1.0, rel_tol=10.0 * NEARLY):
+        if scale == 0.0 or math.isinf(scale) or alike or math.isclose(factor, 1.0, rel_tol=10.0 * NEARLY):
             break
         modes = None
     return scale * stiffest
@@ -559,14 +559,14 @@ def last_stable(margin: Callable[[float], float], start: float) -> float:
     margin: the logarithm of the largest stable step over the step, of a scale. start: where the search begins.
     """
     low = high = start
-    found = margin(start)
-    if abs(found) <= NEARLY:
+    logarithm = margin(start)
+    if abs(logarithm) <= NEARLY:
         return start
     # Undamped, a stable step goes as the inverse root of the stiffness: a little beyond that lies the other end.
-    ratio, is_stable = math.exp(min(2.2 * abs(found), LARGEST_RATIO)), found >= 0.0
-    while (found >= 0.0) == is_stable:
+    ratio, is_stable = math.exp(min(2.2 * abs(logarithm), LARGEST_RATIO)), logarithm >= 0.0
+    while (logarithm >= 0.0) == is_stable:
         low, high = (high, high * ratio) if is_stable else (low / ratio, low)
-        found = margin(high if is_stable else low)
+        logarithm = margin(high if is_stable else low)
         ratio = FURTHER
         if low < 1e-12:
             return 0.0
@@ -600,11 +600,13 @@ def gauge_of(modes: list[Mode], record: Integrator, h: float, motion: Motion = S
     # Of a mode that slides the damping depends on the step, so that the limit is that of the longest step.
     is_sliding = mode.omega > 0.0 and mode.sliding >= LEAST_SLIDING
     limit = longest * mode.omega if is_sliding else record.limit(mode.zeta)
-    found = Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest, h, max((m.omega for m in modes), default=0.0))
+    reading = Gauge(
+        mode.omega, mode.zeta, h * mode.omega, limit, longest, h, max((m.omega for m in modes), default=0.0)
+    )
     if not len(motion.omega):
-        return found
-    found = found._replace(
+        return reading
+    reading = reading._replace(
         accurate_step=longest_accurate(record.changes, motion, longest, TOLERANCE),
         error=float(motion_errors(record.changes, motion, np.array([h]))[0]),
     )
-    return found._replace(accurate_method=next(accurate_at(modes, motion, h), "")) if found.is_wrong else found
+    return reading._replace(accurate_method=next(accurate_at(modes, motion, h), "")) if reading.is_wrong else reading

@@ -201,7 +201,7 @@ def advance(
 def energy(system: PointSystem, state: State) -> Energy:
     """Stored energies at the state's time [J]."""
     x, v = state.x.reshape(-1), velocities(system, state).reshape(-1)
-    found = Energy(*energies(x, v, state.t, system.kernel_view(1.0)))
+    energy_parts = Energy(*energies(x, v, state.t, system.kernel_view(1.0)))
     if touches_itself(system):
         raise_if_stopped()
-    return found
+    return energy_parts

@@ -83,8 +83,8 @@ def catenary(
     links = int(points) - 1
     rest = length / links
     numbers = check_law(law)
-    found = law_of(numbers)
-    length_at, energy_at, slope_at = found.length, of_arrays(found.energy), of_arrays(found.stiffness)
+    link_law = law_of(numbers)
+    length_at, energy_at, slope_at = link_law.length, of_arrays(link_law.energy), of_arrays(link_law.stiffness)
     load = gravity * np.concatenate([[0.0], np.broadcast_to(masses, (links + 1,))[1:-1].cumsum()])
     end = np.array([span, rise])
     reach = math.hypot(span, rise)

@@ -140,7 +140,7 @@ def read_columns(
     for row in rows:
         if len(row.words) != count:
             raise line_error(path, row.number, f"{count} columns, not {len(row.words)}")
-    found: dict[str, Column] = {}
+    columns: dict[str, Column] = {}
     left: list[str] = []
     rows_lost = rows_of_nines(head, rows, by_name, path) if missing is None else False
     times = joined(head.words, rows) if has_time else None
@@ -148,27 +148,27 @@ def read_columns(
         meaning = next(one for one in meanings if one.kind is TIME)
         text = " and ".join(head.words[i] for i in (times.places[0], times.places[-1]))
         header = Header("", "", Convention(0.0, 1, False), False)
-        found[meaning.key] = read_time(header, text, times.words, rows, path, notes)
+        columns[meaning.key] = read_time(header, text, times.words, rows, path, notes)
     for i, text in enumerate(head.words):
         if times is not None and i in times.places:
             continue
         header = header_of(text[:MAX_HEADER], by_name, path, head.number)
         meaning = by_name.get(header.name)
         if meaning is None:
-            left.append(shown(text) or f"number {i + 1}, without a name")
+            left.append(header_text(text) or f"number {i + 1}, without a name")
             continue
         if meaning.kind is TIME and times is not None:
-            left.append(shown(text))
+            left.append(header_text(text))
             continue
-        if meaning.key in found:
-            both = f"'{shown(found[meaning.key].header)}' and '{shown(text)}'"
+        if meaning.key in columns:
+            both = f"'{header_text(columns[meaning.key].header)}' and '{header_text(text)}'"
             raise argument_error("path", f"{path}, line {head.number}, columns {both}", f"one column of {meaning.key}")
-        found[meaning.key] = read_column(header, text, meaning, [row.words[i] for row in rows], rows, path, notes,
-                                         missing, rows_lost)  # fmt: skip
+        columns[meaning.key] = read_column(header, text, meaning, [row.words[i] for row in rows], rows, path, notes,
+                                           missing, rows_lost)  # fmt: skip
     if left:
         more = f" and {len(left) - MAX_LISTED} more" if len(left) > MAX_LISTED else ""
         notes.append(f"columns left out: {', '.join(left[:MAX_LISTED])}{more}")
-    return ColumnTable(found, [row.number for row in rows], tuple(notes))
+    return ColumnTable(columns, [row.number for row in rows], tuple(notes))
 
 
 def impossible_nines(words: list[str], kind: Kind, factor: float) -> np.ndarray:
@@ -179,7 +179,7 @@ def impossible_nines(words: list[str], kind: Kind, factor: float) -> np.ndarray:
 
 def rows_of_nines(head: Row, rows: list[Row], names: dict[str, Meaning], path: Path) -> np.ndarray:
     """True (n,) for rows with digits of 9 in a column in which no value can be so: 999 degrees."""
-    found = np.zeros(len(rows), bool)
+    rows_lost = np.zeros(len(rows), bool)
     for i, text in enumerate(head.words):
         header = header_of(text[:MAX_HEADER], names, path, head.number)
         meaning = names.get(header.name)
@@ -189,8 +189,8 @@ def rows_of_nines(head: Row, rows: list[Row], names: dict[str, Meaning], path: P
         measure = measure_of(header.unit or meaning.default) if of_nines(words).any() else None
         factor = None if measure is None else factor_of(meaning.kind, measure)[0]
         if factor is not None:
-            found |= impossible_nines(words, meaning.kind, factor)
-    return found
+            rows_lost |= impossible_nines(words, meaning.kind, factor)
+    return rows_lost
 
 
 def lines_before(rows: list[Row]) -> int:
@@ -278,12 +278,12 @@ def read_column(
     measure = measure_of(unit)
     factor, is_angular = (None, None) if measure is None else factor_of(kind, measure)
     if factor is None:
-        raise argument_error("path", f"{path}, column '{shown(text)}'", f"a unit such as {kind.units}")
+        raise argument_error("path", f"{path}, column '{header_text(text)}'", f"a unit such as {kind.units}")
     if measure is not None and measure.dimensions == ENERGY:
-        notes.append(f"'{shown(text)}' is divided by rho g of sea water, {WEIGHT:.0f} N/m3")
+        notes.append(f"'{header_text(text)}' is divided by rho g of sea water, {WEIGHT:.0f} N/m3")
     values, wrong = values_of(words, missing or (), header.unit)
     if wrong is not None:
-        raise line_error(path, rows[wrong].number, f"numbers in the column '{shown(text)}'")
+        raise line_error(path, rows[wrong].number, f"numbers in the column '{header_text(text)}'")
     nines = of_nines(words) & np.isfinite(values)
     nines &= ~((values >= 0.0) & (values <= min(kind.nines, kind.high / factor)))
     written = np.where(nines, values, np.nan)
@@ -291,7 +291,9 @@ def read_column(
         lost = impossible_nines(words, kind, factor) | beyond_others(values, nines)
         values = np.where(nines & (lost | rows_lost), np.nan, values)
     if not header.unit and in_doubt(values, kind.doubt):
-        raise argument_error("path", f"{path}, column '{shown(text)}'", f"its unit in the header, such as {kind.units}")
+        raise argument_error(
+            "path", f"{path}, column '{header_text(text)}'", f"its unit in the header, such as {kind.units}"
+        )
     scale = factor * (2.0 if header.is_two_sided and kind is DENSITY else 1.0)
     values = values * scale
     bad = ~(np.isnan(values) | ((values >= kind.low) & (values <= kind.high)))
@@ -299,7 +301,7 @@ def read_column(
         i = int(bad.argmax())
         raise line_error(
             path, rows[i].number,
-            f"{plainly(kind.low, factor)} to {plainly(kind.high, factor)} in the column '{shown(text)}'; "
+            f"{plainly(kind.low, factor)} to {plainly(kind.high, factor)} in the column '{header_text(text)}'; "
             f"{words[i]} is no {meaning.key} in {unit}; missing={words[i]} leaves out such numbers",
         )  # fmt: skip
     if kind is DIRECTION:
@@ -320,22 +322,22 @@ def read_time(
     if any(is_time(word) for word in words[:3]):
         clock, wrong = stamps(words, frozenset(MISSING))
         if clock is None:
-            raise line_error(path, rows[wrong].number, f"a time such as {words[0]} in the column '{shown(text)}'")
+            raise line_error(path, rows[wrong].number, f"a time such as {words[0]} in the column '{header_text(text)}'")
     else:
         unit = header.unit.partition(" since ")[0]
         measure = measure_of(unit) if unit else None
         factor = None if measure is None else factor_of(TIME, measure)[0]
         if unit and factor is None:
-            raise argument_error("path", f"{path}, column '{shown(text)}'", f"a unit such as {TIME.units}")
+            raise argument_error("path", f"{path}, column '{header_text(text)}'", f"a unit such as {TIME.units}")
         values, wrong = values_of(words, missing, unit)
         if wrong is not None:
-            raise line_error(path, rows[wrong].number, f"numbers or times in the column '{shown(text)}'")
+            raise line_error(path, rows[wrong].number, f"numbers or times in the column '{header_text(text)}'")
         clock = of_numbers(words, values, factor, header.name)
         if not clock.form:
-            check_step(clock.seconds, factor is not None, shown(text), path, rows[0].number)
+            check_step(clock.seconds, factor is not None, header_text(text), path, rows[0].number)
     if clock.form:
         begin = f", from {clock.begin}" if clock.begin else ""
-        notes.append(f"'{shown(text)}': {clock.form}{begin}, as seconds from the first row")
+        notes.append(f"'{header_text(text)}': {clock.form}{begin}, as seconds from the first row")
     seconds, note = evened(clock)
     if note:
         notes.append(note)
@@ -351,7 +353,7 @@ def notes_on_nines(column: Column, energy: np.ndarray, lines: Sequence[int]) -> 
         return []
     there = np.isfinite(column.nines)
     left = there & np.isnan(column.values)
-    found = []
+    notes = []
     total = float(np.nansum(energy))
     for chosen, said in ((left, "counts as missing; missing=() takes it for a value, with"),
                          (there & ~left, "is taken for a value; missing=... leaves it out, with")):  # fmt: skip
@@ -359,8 +361,8 @@ def notes_on_nines(column: Column, energy: np.ndarray, lines: Sequence[int]) -> 
         if chosen.any() and part > LEAST_NAMED:
             i = int(chosen.argmax())
             more = f" and {int(chosen.sum()) - 1} more like it" if chosen.sum() > 1 else ""
-            found.append(f"line {lines[i]}: a number of digits of 9{more} {said} {100.0 * part:.3g} % of the energy")
-    return found
+            notes.append(f"line {lines[i]}: a number of digits of 9{more} {said} {100.0 * part:.3g} % of the energy")
+    return notes
 
 
 LEAST_NAMED = 0.01  # fraction of the energy in digits of 9, from which on they are named
@@ -394,6 +396,6 @@ def plainly(value: float, factor: float) -> str:
     return f"{value / factor:.6g}"
 
 
-def shown(text: str) -> str:
+def header_text(text: str) -> str:
     """A header as a message shows it."""
     return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."

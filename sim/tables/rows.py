@@ -110,19 +110,19 @@ def with_points(rows: list[Row], path: Path) -> list[Row]:
     """
     if not any("," in word for row in rows for word in row.words):
         return rows
-    shown: dict[str, tuple[int, str]] = {}  # decimal sign, "?," if a comma may be either -> line, and a word
+    signs: dict[str, tuple[int, str]] = {}  # decimal sign, "?," if a comma may be either -> line, and a word
     for row in rows:
         for word in row.words:
             if "," in word or "." in word:
                 sign = decimal_sign(word)
-                shown.setdefault(sign + "," if sign == "?" and "," in word else sign, (row.number, word))
-    if {".", ","} <= shown.keys():
-        number, word = max(shown["."], shown[","])
-        first = min(shown["."], shown[","])
+                signs.setdefault(sign + "," if sign == "?" and "," in word else sign, (row.number, word))
+    if {".", ","} <= signs.keys():
+        number, word = max(signs["."], signs[","])
+        first = min(signs["."], signs[","])
         raise line_error(path, number, f"one decimal sign: {word} here, and {first[1]} in line {first[0]}")
-    decimal = next((sign for sign in (",", ".") if sign in shown), "")
-    if not decimal and "?," in shown:
-        number, word = shown["?,"]
+    decimal = next((sign for sign in (",", ".") if sign in signs), "")
+    if not decimal and "?," in signs:
+        number, word = signs["?,"]
         raise line_error(
             path, number, f"a decimal point: {word} may be {word.replace(',', '.')} or {word.replace(',', '')}"
         )

@@ -23,18 +23,18 @@ def read_text(path: Path, forms: str) -> str:
         with path.open("rb") as file:
             packed = file.read(2) == b"\x1f\x8b"
         with gzip.open(path) if packed else path.open("rb") as file:
-            found = file.read(MAX_BYTES + 1)
+            content = file.read(MAX_BYTES + 1)
     except (EOFError, gzip.BadGzipFile, zlib.error):
         raise argument_error("path", str(path), f"{forms}; what gzip has packed is damaged here") from None
     except OSError as error:
         raise unreadable("path", path, error) from None
-    if len(found) > MAX_BYTES:
+    if len(content) > MAX_BYTES:
         raise argument_error("path", str(path), f"{forms}, of at most {MAX_BYTES // 1_000_000} MB unpacked")
-    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return found.decode("utf-16", errors="replace")
-    if b"\0" in found:
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    if b"\0" in content:
         raise argument_error("path", str(path), forms)
     try:
-        return found.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError:  # of spreadsheets on Windows: it matters in units only
-        return found.decode("cp1252", errors="replace")
+        return content.decode("cp1252", errors="replace")

@@ -80,32 +80,32 @@ def is_time(word: str) -> bool:
     return any(form.fullmatch(word.strip()) for form in (STAMP, IS_CLOCK, SHORT))
 
 
-def seconds_of_clock(found: re.Match[str]) -> float:
+def seconds_of_clock(match: re.Match[str]) -> float:
     """Seconds since midnight, of the zone UTC where a zone is written. Raises ValueError."""
-    hour, minute = int(found["hour"]), int(found["minute"])
-    second = float((found["second"] or "0").replace(",", "."))
-    if found["half"]:
+    hour, minute = int(match["hour"]), int(match["minute"])
+    second = float((match["second"] or "0").replace(",", "."))
+    if match["half"]:
         if not 1 <= hour <= 12:
             raise ValueError
-        hour = hour % 12 + (12 if found["half"] in "Pp" else 0)
+        hour = hour % 12 + (12 if match["half"] in "Pp" else 0)
     if hour > 24 or minute > 59 or second >= 61.0:
         raise ValueError
-    zone, shift = found["zone"] or "", 0.0
+    zone, shift = match["zone"] or "", 0.0
     if zone[:1] in ("+", "-"):
         digits = zone[1:].replace(":", "")
         shift = (60.0 * int(digits[:2]) + int(digits[2:] or 0)) * (60.0 if zone[0] == "+" else -60.0)
     return 3600.0 * hour + 60.0 * minute + second - shift
 
 
-def day_of(found: re.Match[str], is_month_first: bool) -> int:
+def day_of(match: re.Match[str], is_month_first: bool) -> int:
     """The day of a date, counted from the year 1. Raises ValueError."""
-    if found["y"]:
-        return datetime.date(int(found["y"]), int(found["m"]), int(found["d"])).toordinal()
-    first, second = found["a"], found["b"]
+    if match["y"]:
+        return datetime.date(int(match["y"]), int(match["m"]), int(match["d"])).toordinal()
+    first, second = match["a"], match["b"]
     if second.isalpha():
-        return datetime.date(int(found["c"]), MONTHS.get(second.lower(), 0), int(first)).toordinal()
+        return datetime.date(int(match["c"]), MONTHS.get(second.lower(), 0), int(first)).toordinal()
     day, month = (second, first) if is_month_first else (first, second)
-    return datetime.date(int(found["c"]), int(month), int(day)).toordinal()
+    return datetime.date(int(match["c"]), int(month), int(day)).toordinal()
 
 
 def decimals(text: str | None) -> float:
@@ -123,22 +123,22 @@ def stamps(words: Sequence[str], missing: frozenset[str]) -> tuple[Clock | None,
         if plain.lower() in missing:
             parts.append((None, math.nan))
             continue
-        found = STAMP.fullmatch(plain) or IS_CLOCK.fullmatch(plain)
-        short = None if found else SHORT.fullmatch(plain)
+        match = STAMP.fullmatch(plain) or IS_CLOCK.fullmatch(plain)
+        short = None if match else SHORT.fullmatch(plain)
         try:
             if short:
                 parts.append((None, 60.0 * int(short["minute"]) + float(short["second"].replace(",", "."))))
                 resolution = min(resolution, decimals(short["second"]))
                 continue
-            if found is None:
+            if match is None:
                 return None, i
-            is_dated = "y" in found.re.groupindex
+            is_dated = "y" in match.re.groupindex
             has_dates |= is_dated
-            parts.append((found if is_dated else None, seconds_of_clock(found) if found["hour"] else 0.0))
+            parts.append((match if is_dated else None, seconds_of_clock(match) if match["hour"] else 0.0))
         except ValueError:
             return None, i
-        if found["hour"]:
-            resolution = min(resolution, decimals(found["second"]) if found["second"] else 60.0)
+        if match["hour"]:
+            resolution = min(resolution, decimals(match["second"]) if match["second"] else 60.0)
     seconds = np.array([clock for _, clock in parts])
     begin = words[0].strip()
     if not has_dates:
@@ -149,13 +149,13 @@ def stamps(words: Sequence[str], missing: frozenset[str]) -> tuple[Clock | None,
     for is_month_first in (False, True):
         days: dict[str, int] = {}
         ordinals = np.full(len(parts), math.nan)
-        for i, (found, _) in enumerate(parts):
-            if found is None:
+        for i, (match, _) in enumerate(parts):
+            if match is None:
                 continue
-            key = found[0][: found.end("c") if found["c"] else found.end("d")]
+            key = match[0][: match.end("c") if match["c"] else match.end("d")]
             try:
                 if key not in days:
-                    days[key] = day_of(found, is_month_first)
+                    days[key] = day_of(match, is_month_first)
             except ValueError:
                 wrong = max(wrong, i)
                 break
@@ -211,12 +211,12 @@ def joined(names: Sequence[str], rows: Sequence[Row]) -> TimeColumns | None:
                     return TimeColumns((i, j), [f"{row.words[i].strip()} {row.words[j].strip()}" for row in rows])
     places = {part: next((i for i, name in enumerate(letters) if name in known), None)
               for part, (known, _) in PARTS.items()}  # fmt: skip
-    found = {part: i for part, i in places.items() if i is not None}
-    if not {"hour", "minute"} <= found.keys() and not {"minute", "second"} <= found.keys():
+    indices = {part: i for part, i in places.items() if i is not None}
+    if not {"hour", "minute"} <= indices.keys() and not {"minute", "second"} <= indices.keys():
         return None
     try:
-        return TimeColumns(tuple(found.values()), [stamp_of({part: row.words[i] for part, i in found.items()})
-                                                   for row in rows])  # fmt: skip
+        return TimeColumns(tuple(indices.values()), [stamp_of({part: row.words[i] for part, i in indices.items()})
+                                                     for row in rows])  # fmt: skip
     except ValueError:
         return None
 

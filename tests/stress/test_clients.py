@@ -44,8 +44,8 @@ def clients(viewer: Viewer) -> Iterator[Clients]:
 def runs(viewer: Viewer) -> None:
     """Whatever came before: the scene runs on, and both threads live."""
     viewer.loop.commands.put(Play())
-    before, shown = viewer.loop.scene.time, viewer.served.shown
-    until(lambda: viewer.loop.scene.time > before and viewer.served.shown > shown + 2, "the scene runs on")
+    before, shown = viewer.loop.scene.time, viewer.served.shown_serial
+    until(lambda: viewer.loop.scene.time > before and viewer.served.shown_serial > shown + 2, "the scene runs on")
     assert not viewer.loop.run.halted
     assert all(thread.is_alive() for thread in viewer.served.threads)
 
@@ -72,7 +72,7 @@ def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Cl
         good = clients.join()
         runs(viewer)
         process = psutil.Process()
-        until(lambda: clients.received[good] > 2_000_000 or viewer.served.shown > 300, "some traffic", 120.0)
+        until(lambda: clients.received[good] > 2_000_000 or viewer.served.shown_serial > 300, "some traffic", 120.0)
         gc.collect()
         before, served = process.memory_info().rss, clients.received[good]
         until(lambda: clients.received[good] > 2 * served, "as much again", 120.0)

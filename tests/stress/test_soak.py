@@ -69,8 +69,8 @@ def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
                 before = resident()
         after = resident()
         assert not viewer.loop.run.halted
-        shown, got = viewer.served.shown, clients.received[stays]
-        until(lambda: viewer.served.shown > shown and clients.received[stays] > got, "still served")
+        shown, got = viewer.served.shown_serial, clients.received[stays]
+        until(lambda: viewer.served.shown_serial > shown and clients.received[stays] > got, "still served")
     viewer.shut()
     tally.notes.append(
         f"{name}: served for {SERVED:g} s to one client and {visits} that came and were killed, "

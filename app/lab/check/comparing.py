@@ -78,16 +78,16 @@ def parts(value: Any) -> tuple[np.ndarray, ...]:
     return tuple(np.asarray(part, np.float64) for part in (value if isinstance(value, tuple) else (value,)))
 
 
-def same_shape(found: Any, expected: Any) -> bool:
+def same_shape(result: Any, expected: Any) -> bool:
     """True if two results have arrays of the same shapes."""
-    return [a.shape for a in parts(found)] == [b.shape for b in parts(expected)]
+    return [a.shape for a in parts(result)] == [b.shape for b in parts(expected)]
 
 
-def same(found: Any, expected: Any, tolerance: float = TOLERANCE) -> bool:
+def same(result: Any, expected: Any, tolerance: float = TOLERANCE) -> bool:
     """True if two results agree within the tolerance, every part relative to its largest value."""
-    if not same_shape(found, expected):
+    if not same_shape(result, expected):
         return False
-    for a, b in zip(parts(found), parts(expected), strict=True):
+    for a, b in zip(parts(result), parts(expected), strict=True):
         finite = np.isfinite(b)
         scale = np.abs(b[finite]).max(initial=0.0)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
@@ -102,11 +102,11 @@ def has(is_such: Callable[[np.ndarray], np.ndarray], value: Any) -> bool:
     return any(is_such(part).any() for part in parts(value))
 
 
-def reproduces(form: Any, found: Any, right: Any) -> bool:
+def reproduces(form: Any, result: Any, right: Any) -> bool:
     """True if a form gives a student's result, relative to it, however small. right: for rounding."""
-    if not same_shape(form, found):
+    if not same_shape(form, result):
         return False
-    for a, b, c in zip(parts(form), parts(found), parts(right), strict=True):
+    for a, b, c in zip(parts(form), parts(result), parts(right), strict=True):
         finite = np.isfinite(b)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
             return False

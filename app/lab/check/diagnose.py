@@ -64,10 +64,10 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
     samples = [trial.sample for trial in trials]
     first = next(i for i, trial in enumerate(trials) if not trial.is_right)
     for i, trial in enumerate(trials):
-        if [(p.ndim, p.shape[1:]) for p in parts(trial.found)] != [(p.ndim, p.shape[1:]) for p in parts(trial.right)]:
-            text = f"it returns {form_of(trial.found)}; expected {form_of(trial.right)}"
+        if [(p.ndim, p.shape[1:]) for p in parts(trial.result)] != [(p.ndim, p.shape[1:]) for p in parts(trial.right)]:
+            text = f"it returns {form_of(trial.result)}; expected {form_of(trial.right)}"
             return with_repair(student, samples, Wrong(text, "wrong shape"), i)
-    has_numbers = any(has(np.isfinite, trial.found) for trial in trials)  # without any, too many forms agree with it
+    has_numbers = any(has(np.isfinite, trial.result) for trial in trials)  # without any, too many forms agree with it
 
     def is_stated(form: Callable[..., Any] | None) -> bool:
         return form is not None and has_numbers and all(has_form(student, form, trial) for trial in trials)
@@ -133,7 +133,7 @@ def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]
     if why.mistake != "constant factor" or unit is None:
         return why
     results, right = (np.concatenate([part.ravel() for t in trials for part in parts(getattr(t, which))])
-                    for which in ("found", "right"))  # fmt: skip
+                    for which in ("result", "right"))  # fmt: skip
     ratio = float(np.median((results / np.where(right == 0.0, np.nan, right))[right != 0.0]))
     prefix = next((sign for sign, factor in PREFIXES.items() if abs(ratio - factor) < 1e-4 * factor), "")
     return why._replace(text=f"{why.text} Is it in {prefix}{unit[1]}? It must be in {unit[1]}.") if prefix else why
@@ -150,7 +150,7 @@ def has_form(student: StudentFunction, form: Callable[..., Any], trial: Trial) -
         value = student.normalised(conform(call(form, trial.sample), student.reference(*trial.sample)))
     except Exception:  # an input that breaks the form
         return False
-    return reproduces(value, trial.found, trial.right)
+    return reproduces(value, trial.result, trial.right)
 
 
 def explain(student: StudentFunction) -> Explanation | None:
@@ -212,9 +212,9 @@ def repair(student: StudentFunction, samples: Sequence[Sample], first: int, *kin
         student.effort += runner.effort - before  # the student's function is not charged for this
 
 
-def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -> Explanation:
-    """The words for an edit that makes a student's function right. shown: as of `Edit`."""
-    before, _, line = shown[0]
+def explain_repair(cause: str, condition: str, replacements: Sequence[Sequence[Any]]) -> Explanation:
+    """The words for an edit that makes a student's function right. replacements: as of `EditWords`."""
+    before, _, line = replacements[0]
     if condition:
         how = f"It is right if the condition {before} in line {line} {condition} holds."
     elif says_repair(cause):
@@ -222,7 +222,7 @@ def explain_repair(cause: str, condition: str, shown: Sequence[Sequence[Any]]) -
     else:
         parts = [
             f"{f'with {after} in place of' if after else 'without'} {before} in line {line}"
-            for before, after, line in shown
+            for before, after, line in replacements
         ]
         how = f"{', and '.join(parts)} it is right."
     return Explanation("", f"{cause} {how[0].upper()}{how[1:]}".strip(), line=line)
@@ -240,7 +240,7 @@ def is_repaired(student: StudentFunction, value: Any, sample: Sample, right: Any
 def passes(function: StudentFunction, samples: Sequence[Sample]) -> bool:
     """True if a function passes everything that decides whether it is right, within narrower limits."""
     try:
-        if not all(same(trial.found, trial.right, REPAIR_TOLERANCE) for trial in function.trials(samples)):
+        if not all(same(trial.result, trial.right, REPAIR_TOLERANCE) for trial in function.trials(samples)):
             return False
         behave(function)
     except (RunError, Wrong, ValueError, IndexError):
@@ -250,7 +250,7 @@ def passes(function: StudentFunction, samples: Sequence[Sample]) -> bool:
 
 def unused_arguments(student: StudentFunction, trials: Sequence[Trial]) -> Explanation | None:
     """The arguments that a function leaves unused, or None."""
-    if not all(same_shape(trial.found, trial.right) for trial in trials):
+    if not all(same_shape(trial.result, trial.right) for trial in trials):
         return None
     unused = [name for i, name in enumerate(student.task.arguments) if ignores(student, trials, i)]
     if not unused:
@@ -281,10 +281,10 @@ def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
             return False
         changed_reference = True
         try:
-            result = student.trial(sample).found
+            result = student.trial(sample).result
         except (RunError, Wrong):  # as of an input that the task does not have
             return False
-        if not same(result, one.found, 0.0):
+        if not same(result, one.result, 0.0):
             return False
     return changed_reference
 
@@ -303,7 +303,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     check, names = student.task.check, student.task.arguments
     wrong = min((trial for trial in trials if not trial.is_right), key=lambda trial: size_of(trial.sample))
     compared = compared_parts(trials)
-    if text := getattr(check, "contrast", lambda *_: "")(wrong.found, wrong.right, *wrong.sample):
+    if text := getattr(check, "contrast", lambda *_: "")(wrong.result, wrong.right, *wrong.sample):
         try:
             behave(student)
         except Wrong as failed:
@@ -311,8 +311,8 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
                 return Explanation(failed.mistake, f"{failed} {text}")
         return Explanation("", text)
     if compared is None:
-        other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
-        raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
+        other = next(trial for trial in trials if not same_shape(trial.result, trial.right))
+        raise Wrong(f"it returns {form_of(other.result)}; expected {form_of(other.right)}", "wrong shape")
     explanation = differences.explain_where(compared, names, part_names(student, trials), ())
     if text := other_calls(student, wrong) or steps_in_sum(student, trials):
         return explanation._replace(text=f"{text} {explanation.text}")
@@ -377,7 +377,7 @@ def steps_in_sum(student: StudentFunction, trials: Sequence[Trial]) -> str:
 def error_of(trial: Trial) -> float:
     """The largest error of a result, relative to the largest number of its part; infinite where there is no ratio."""
     worst = 0.0
-    for a, b in zip(parts(trial.found), parts(trial.right), strict=True):
+    for a, b in zip(parts(trial.result), parts(trial.right), strict=True):
         if not (np.isfinite(a).all() and np.isfinite(b).all()):
             return math.inf
         error, scale = float(np.abs(a - b).max(initial=0.0)), float(np.abs(b).max(initial=0.0))
@@ -387,9 +387,9 @@ def error_of(trial: Trial) -> float:
 
 def shown_last(student: StudentFunction) -> str:
     """The last call with its result and the right one, if they differ; otherwise ""."""
-    if student.last is None or not same_shape(student.last.found, student.last.right):
+    if student.last is None or not same_shape(student.last.result, student.last.right):
         return ""
-    last = differences.compared(student.last.sample, parts(student.last.found), parts(student.last.right))
+    last = differences.compared(student.last.sample, parts(student.last.result), parts(student.last.right))
     names = part_names(student, [student.last])
     return differences.example(last, student.task.arguments, names) if last.is_wrong else ""
 
@@ -407,9 +407,9 @@ def nearly(trials: Sequence[Trial]) -> float | None:
 
 def compared_parts(trials: Sequence[Trial]) -> list[differences.Difference] | None:
     """The trials with their differences; None if results have other shapes."""
-    if not all(same_shape(trial.found, trial.right) for trial in trials):
+    if not all(same_shape(trial.result, trial.right) for trial in trials):
         return None
-    return [differences.compared(trial.sample, parts(trial.found), parts(trial.right)) for trial in trials]
+    return [differences.compared(trial.sample, parts(trial.result), parts(trial.right)) for trial in trials]
 
 
 def part_names(student: StudentFunction, trials: Sequence[Trial]) -> tuple[str, ...]:

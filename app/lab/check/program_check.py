@@ -183,7 +183,7 @@ def compare(student: StudentFunction) -> None:
     if all(trial.is_right for trial in trials):
         return
     alternatives = getattr(check, "ALTERNATIVES", ())
-    if any(all(same(t.found, student.normalised(call(other, t.sample))) for t in trials) for other in alternatives):
+    if any(all(same(t.result, student.normalised(call(other, t.sample))) for t in trials) for other in alternatives):
         return
     raise diagnosed(student, trials)
 

@@ -25,13 +25,13 @@ class Trial(NamedTuple):
     """One input, with the student's result and the right one, in the form in which they are compared."""
 
     sample: tuple[Any, ...]
-    found: Any
+    result: Any
     right: Any
 
     @property
     def is_right(self) -> bool:
         """True if both agree."""
-        return same(self.found, self.right)
+        return same(self.result, self.right)
 
 
 class StudentFunction:
@@ -113,7 +113,7 @@ class StudentFunction:
     def not_finite(self, trial: Trial) -> Wrong | None:
         """A result that is NaN or infinite where the right one is not; None for any other."""
         for is_such, what, name in ((np.isnan, "NaN (not a number)", "NaN"), (np.isinf, "infinity", "infinite")):
-            if has(is_such, trial.found) and not has(is_such, trial.right):
+            if has(is_such, trial.result) and not has(is_such, trial.right):
                 return Wrong(f"it returns {what}{self.special_case(trial, is_such) or NO_SPECIAL_CASE}", name)
         return None
 

@@ -81,7 +81,7 @@ def read_answers(folder: Path) -> Answers:
             else:
                 line = next((i for i, line in enumerate(text.split("\n"), 1) if re.match(rf"\s*{key}\s*=", line)), 0)
                 unread[task, key] = Unread(
-                    line, shown(value), "write a number such as 0.5, or a text in quotation marks"
+                    line, toml_text(value), "write a number such as 0.5, or a text in quotation marks"
                 )
     said = [wrong] if wrong else []
     said += [f"{'.'.join(part for part in key if part)}, {entry.sentence}" for key, entry in unread.items()]
@@ -108,7 +108,7 @@ def is_finite(value: int | float | bool) -> bool:
         return False
 
 
-def shown(value: Any) -> str:
+def toml_text(value: Any) -> str:
     """A value of TOML as it is written, about."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 

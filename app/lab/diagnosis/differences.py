@@ -24,7 +24,7 @@ class Difference(NamedTuple):
     """One input with the student's result and the right one, as arrays of equal shapes."""
 
     arguments: tuple[Any, ...]
-    found: tuple[np.ndarray, ...]
+    result: tuple[np.ndarray, ...]
     right: tuple[np.ndarray, ...]
     wrong: tuple[np.ndarray, ...]  # True where a number differs
 
@@ -34,17 +34,17 @@ class Difference(NamedTuple):
         return any(part.any() for part in self.wrong)
 
 
-def compared(arguments: tuple[Any, ...], found: Sequence[np.ndarray], right: Sequence[np.ndarray]) -> Difference:
+def compared(arguments: tuple[Any, ...], result: Sequence[np.ndarray], right: Sequence[np.ndarray]) -> Difference:
     """A trial from the parts of two results."""
     wrong = []
-    for a, b in zip(found, right, strict=True):
+    for a, b in zip(result, right, strict=True):
         if a.shape != b.shape:
             wrong.append(np.ones(b.shape, bool))
             continue
         with np.errstate(all="ignore"):
             scale = np.abs(b[np.isfinite(b)]).max(initial=0.0)
             wrong.append(~((np.abs(a - b) <= TOLERANCE * scale + 1e-12) | (a == b) | (np.isnan(a) & np.isnan(b))))
-    return Difference(arguments, tuple(found), tuple(right), tuple(wrong))
+    return Difference(arguments, tuple(result), tuple(right), tuple(wrong))
 
 
 def explain_where(
@@ -113,7 +113,7 @@ def is_held(wrong: Sequence[Difference]) -> bool:
 def example(trial: Difference, names: Sequence[str], parts: Sequence[str]) -> str:
     """One input, and both values there: the first number that differs, or the few of them."""
     i = next(i for i, part in enumerate(trial.wrong) if part.any())
-    result, right, wrong = trial.found[i], trial.right[i], trial.wrong[i]
+    result, right, wrong = trial.result[i], trial.right[i], trial.wrong[i]
     name = f" as {parts[i]}" if len(parts) > 1 else ""
     which: int | None = None
     if result.ndim and result.size > MAX_NUMBERS:
@@ -123,13 +123,13 @@ def example(trial: Difference, names: Sequence[str], parts: Sequence[str]) -> st
     inputs = [
         f"{name} = {text}"
         for name, value in zip(names, trial.arguments, strict=True)
-        if (text := shown(value, which, len(wrong) if wrong.ndim else 0))
+        if (text := argument_text(value, which, len(wrong) if wrong.ndim else 0))
     ]
     at = f"With {', '.join(inputs)} it returns" if inputs else "It returns"
     return f"{at} {number(result)}{name}; expected {number(right)}."
 
 
-def shown(value: Any, which: int | None, length: int) -> str:
+def argument_text(value: Any, which: int | None, length: int) -> str:
     """An argument in a text: a number, a short array, or its entry for a result of this number; else ""."""
     if callable(value):
         return ""

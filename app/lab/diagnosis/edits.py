@@ -51,7 +51,7 @@ class Candidate(NamedTuple):
     condition: str = ""
 
 
-class Shown(NamedTuple):
+class Replacement(NamedTuple):
     """One replacement in words: texts and line. after is "" if the text is taken out."""
 
     before: str
@@ -65,13 +65,13 @@ class EditWords(NamedTuple):
     rank: tuple[int, int, int]
     cause: str
     condition: str
-    shown: tuple[Shown, ...]
+    replacements: tuple[Replacement, ...]
 
     @property
     def is_clear(self) -> bool:
         """True if a sentence can name the change: each text is one line, or the cause says the repair."""
         return says_repair(self.cause) or not any(
-            "\n" in text for one in self.shown for text in (one.before, one.after)
+            "\n" in text for one in self.replacements for text in (one.before, one.after)
         )
 
 
@@ -175,7 +175,7 @@ class Tree:
             after = [source_of(new) if owner is node else source_of(owner) for owner, (node, new) in pairs]
         inner = {child for owner in owners for child in ast.walk(owner) if child is not owner}
         replacements = tuple(dict.fromkeys(
-            Shown(text, new, getattr(owner, "lineno", 0))
+            Replacement(text, new, getattr(owner, "lineno", 0))
             for owner, text, new in zip(owners, before, after, strict=True) if owner not in inner
         ))  # fmt: skip
         length = sum(abs(len(one.after) - len(one.before)) for one in replacements)

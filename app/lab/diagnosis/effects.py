@@ -134,14 +134,14 @@ def advice(function: Callable[..., Any], name: str, place: CodeLine | None) -> s
 
 
 def state_effect(
-    anew: Anew, kept: Sequence[str], arguments: Sequence[Any], folder: Path, *, alternates: bool, differs: bool
+    anew: Anew, names: Sequence[str], arguments: Sequence[Any], folder: Path, *, alternates: bool, differs: bool
 ) -> Effect:
-    """The effect of a function that changes things outside of it. kept: their names in words."""
-    if not kept:
+    """The effect of a function that changes things outside of it. names: of these, in words."""
+    if not names:
         return Effect(STATE, f"two calls with the same arguments give different results{turns(alternates)}: {HIDDEN}")
     function, modules = anew()
     shake()
-    first, key = state_of(modules) | settings(), kept[0]
+    first, key = state_of(modules) | settings(), names[0]
     with restored():
         place = traced(
             function, copied(arguments), folder, lambda _: (state_of(modules) | settings()).get(key) != first.get(key)
@@ -367,7 +367,7 @@ class Audit:
     """Notes the files that a student's function writes, and changes of the environment, by a permanent audit hook."""
 
     def __init__(self) -> None:
-        self.found: Written | None = None
+        self.writes: Written | None = None
         self.has_hook = False
         self.thread = 0
         self.folder = ""
@@ -391,17 +391,17 @@ class Audit:
         """Path and line of each file that this thread writes in a `with` block."""
         self.listen()
         writes: Written = []
-        self.found, self.thread, self.folder = writes, threading.get_ident(), str(folder)
+        self.writes, self.thread, self.folder = writes, threading.get_ident(), str(folder)
         try:
             yield writes
         finally:
-            self.found = None
+            self.writes = None
 
     def note(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note an event that writes a file or changes the environment."""
         if event in VARIABLES:
             self.variables = None
-        if self.found is None or threading.get_ident() != self.thread or not (event == "open" or event in WRITES):
+        if self.writes is None or threading.get_ident() != self.thread or not (event == "open" or event in WRITES):
             return
         path, *how = arguments
         if event == "open" and not is_writing(*how[:2]):
@@ -410,7 +410,7 @@ class Audit:
             frame: FrameType | None = inspect.currentframe()
             while frame is not None and os.path.dirname(frame.f_code.co_filename) != self.folder:
                 frame = frame.f_back
-            self.found.append((str(path), None if frame is None else place_of(frame)))
+            self.writes.append((str(path), None if frame is None else place_of(frame)))
 
 
 def is_writing(mode: str | None, flags: int) -> bool:

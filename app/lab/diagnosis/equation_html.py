@@ -22,7 +22,7 @@ def equation_line(line: Equation) -> Html:
     """One equation."""
     expression = join(
         fill('<b class="wrong">{}</b>', notation(piece.text)) if piece.wrong else notation(piece.text)
-        for piece in line.found
+        for piece in line.pieces
     )
     right = fill('<div class="right">must be {}</div>', notation(line.right)) if line.right else Html()
     return fill("<div>{} = {}{}</div>", notation(line.name), expression, right)

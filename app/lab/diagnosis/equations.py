@@ -202,10 +202,10 @@ def rank(expression: Expression, right: Expression) -> tuple[int, int, int]:
     return len(expression), len(differing(expression, right, SAME_COEFFICIENT)), sum(denominators)
 
 
-def differing(found: Expression, right: Expression, tolerance: float) -> set[Monomial]:
+def differing(expression: Expression, right: Expression, tolerance: float) -> set[Monomial]:
     """The terms in which two expressions differ."""
-    terms = set(found) | set(right)
-    return {term for term in terms if abs(found.get(term, 0.0) - right.get(term, 0.0)) > tolerance}
+    terms = set(expression) | set(right)
+    return {term for term in terms if abs(expression.get(term, 0.0) - right.get(term, 0.0)) > tolerance}
 
 
 class RightMethod(NamedTuple):
@@ -224,7 +224,7 @@ class ComparedRow(NamedTuple):
     """A row of a tableau beside that of the required method."""
 
     name: str
-    found: Expression
+    expression: Expression
     right: Expression
     equation: Equation
 

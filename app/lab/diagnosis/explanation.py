@@ -14,18 +14,18 @@ class Piece(NamedTuple):
 class Equation(NamedTuple):
     """One equation of a function.
 
-    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" if
+    name: its left side, as "x3" or "new x". pieces: of the student's right side. right: the right one; "" if
     both agree.
     """
 
     name: str
-    found: tuple[Piece, ...]
+    pieces: tuple[Piece, ...]
     right: str = ""
 
     @property
     def text(self) -> str:
         """The student's right side."""
-        return "".join(piece.text for piece in self.found)
+        return "".join(piece.text for piece in self.pieces)
 
 
 class Explanation(NamedTuple):

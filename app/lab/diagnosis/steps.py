@@ -53,18 +53,18 @@ def count_wrong(rows: Sequence[ComparedRow]) -> int:
     return sum(row.is_wrong for row in rows)
 
 
-def explain_stages(found: StepTableau, reference: StepTableau) -> Explanation:
+def explain_stages(tableau: StepTableau, reference: StepTableau) -> Explanation:
     """The explanation of a step with more or fewer states than the method has."""
-    few, many = ("few", "more") if found.stages < reference.stages else ("many", "fewer")
-    number = "1 state" if found.stages == 1 else f"{found.stages} states"
+    few, many = ("few", "more") if tableau.stages < reference.stages else ("many", "fewer")
+    number = "1 state" if tableau.stages == 1 else f"{tableau.stages} states"
     text = f"It uses the acceleration at {number}; the method uses it at {many}."
-    order = order_sentence(found, reference)
-    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)), found.step)
+    order = order_sentence(tableau, reference)
+    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(tableau)), tableau.step)
 
 
-def order_sentence(found: StepTableau, reference: StepTableau) -> str:
+def order_sentence(tableau: StepTableau, reference: StepTableau) -> str:
     """A sentence on an order of a method that is too low."""
-    has, needs = order_of(found), order_of(reference)
+    has, needs = order_of(tableau), order_of(reference)
     if has >= needs:
         return ""
     return f"It has order {has} instead of {needs}." if has else "Smaller steps do not bring it closer to the motion."
@@ -97,7 +97,9 @@ def said_of(row: ComparedRow) -> str:
 
 def is_reversed(row: ComparedRow) -> bool:
     """True if each term has the opposite sign."""
-    return set(row.found) == set(row.right) and all(abs(c + row.right[term]) < 1e-9 for term, c in row.found.items())
+    return set(row.expression) == set(row.right) and all(
+        abs(c + row.right[term]) < 1e-9 for term, c in row.expression.items()
+    )
 
 
 def is_chained(row: ComparedRow) -> bool:
@@ -105,24 +107,24 @@ def is_chained(row: ComparedRow) -> bool:
     own = row.name.removeprefix(f"{NEW} ")[0]
     return (
         (own, 0) in row.right
-        and (own, 0) not in row.found
-        and any(symbol[0] == own and symbol[1:].isdigit() for symbol, power in row.found if power == 0)
+        and (own, 0) not in row.expression
+        and any(symbol[0] == own and symbol[1:].isdigit() for symbol, power in row.expression if power == 0)
     )
 
 
 def weights_of(row: ComparedRow) -> float | None:
     """The sum of the weights of a result with the right terms; None if it is 1, or a term is another one."""
-    if row.name not in PARTS or set(row.found) != set(row.right) or len(row.right) < 3:
+    if row.name not in PARTS or set(row.expression) != set(row.right) or len(row.right) < 3:
         return None
-    total = sum(c for (_, power), c in row.found.items() if power == 1)
+    total = sum(c for (_, power), c in row.expression.items() if power == 1)
     return None if abs(total - 1.0) < 1e-9 else total
 
 
 def step_change(row: ComparedRow) -> str:
     """ "used twice" or "forgotten" where a term has another power of h than it must have, or ""."""
     for (symbol, power), c in row.right.items():
-        if power > 0 and (symbol, power) not in row.found:
+        if power > 0 and (symbol, power) not in row.expression:
             for change, words in ((1, "used twice"), (-1, "forgotten")):
-                if abs(row.found.get((symbol, power + change), 0.0) - c) < 1e-9:
+                if abs(row.expression.get((symbol, power + change), 0.0) - c) < 1e-9:
                     return words
     return ""

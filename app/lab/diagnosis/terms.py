@@ -101,13 +101,15 @@ class Inputs:
 
     def __init__(
         self, names: Sequence[str], samples: Sequence[tuple[Any, ...]], results: Sequence[np.ndarray],
-        found: Sequence[np.ndarray],
+        student_results: Sequence[np.ndarray],
     ) -> None:  # fmt: skip
-        """results, found: the right ones and the student's; the larger sets the scale at each input."""
+        """results, student_results: the right ones and the student's; the larger sets the scale at each input."""
         self.names, self.samples = tuple(names), samples
         self.shapes = [result.shape for result in results]
         self.lengths = np.array([result.size for result in results])
-        self.scales = [float(np.abs(pair).max(initial=0.0)) or 1.0 for pair in zip(results, found, strict=True)]
+        self.scales = [
+            float(np.abs(pair).max(initial=0.0)) or 1.0 for pair in zip(results, student_results, strict=True)
+        ]
         self.kinds = [kind_of(argument) for argument in samples[0]]
 
     def joined(self, values: Sequence[np.ndarray]) -> np.ndarray:
@@ -196,9 +198,9 @@ def explain_terms(
     return Explanation(mistake, " ".join([text, *others]), tuple(lines), stated(findings, terms), is_vague)
 
 
-def factor_of_all(found: Sequence[np.ndarray], results: Sequence[np.ndarray]) -> float:
+def factor_of_all(student_results: Sequence[np.ndarray], results: Sequence[np.ndarray]) -> float:
     """The factor between all results of two functions, within `TOLERANCE`; 0 without one."""
-    a, b = (np.concatenate([value.ravel() for value in values]) for values in (found, results))
+    a, b = (np.concatenate([value.ravel() for value in values]) for values in (student_results, results))
     largest = np.argmax(np.abs(b))
     factor = float(a[largest] / b[largest]) if b[largest] else 0.0
     return factor if (np.abs(a - factor * b) <= TOLERANCE * np.abs(factor * b)).all() else 0.0

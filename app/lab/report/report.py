@@ -136,8 +136,8 @@ def state_class(state: str) -> str:
     )
 
 
-def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
-    """One task: its statement, law, steps done, check and answers. shown: its pictures."""
+def task_section(result: FolderResult, entry: TaskResult, anchor: str, task_pictures: Html) -> Html:
+    """One task: its statement, law, steps done, check and answers, with `task_pictures`."""
     task = entry.task
     # A law may be the answer to a question that is still open.
     is_open = any(answer.state == "not begun" for answer in entry.answers)
@@ -146,7 +146,7 @@ def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Ht
         '<h3 id="{}">{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}{}{}{}{}',
         anchor, task.item, task.title, " (optional)" if task.optional else "", state_class(entry.state), entry.state,
         task.statement, laws, steps(result.answers, task), program_text(entry), answers_of(result.answers, entry),
-        Html() if entry.points is None else chart(entry.points), shown,
+        Html() if entry.points is None else chart(entry.points), task_pictures,
     )  # fmt: skip
 
 
@@ -247,9 +247,9 @@ def pictures(result: FolderResult) -> list[tuple[str, Html]]:
     return figures
 
 
-def of_task(found: Sequence[tuple[str, Html]], task: str) -> Html:
+def of_task(named_pictures: Sequence[tuple[str, Html]], task: str) -> Html:
     """The pictures of one task."""
-    return join(picture for name, picture in found if name == task)
+    return join(picture for name, picture in named_pictures if name == task)
 
 
 def code(result: FolderResult) -> Html:

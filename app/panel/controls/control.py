@@ -114,7 +114,7 @@ class Control:
         return getattr(self.settings.params, self.name)
 
     @property
-    def shown(self) -> Value:
+    def content(self) -> Value:
         """Content of the field."""
         value = self.value
         if self.parameter.choices:
@@ -156,7 +156,7 @@ class Control:
     def refuse(self, reason: str) -> None:
         """Show why a text was refused, and the present value."""
         self.refusal = reason
-        self.field.value = self.shown
+        self.field.value = self.content
         self.show_lines()
 
     def show_value(self) -> None:
@@ -164,7 +164,7 @@ class Control:
         if self.refusal:
             self.refusal = ""
             self.show_lines()
-        self.field.value = self.shown
+        self.field.value = self.content
         if self.slider is not None:
             self.slider.value = (self.scale.position(self.value),)
 

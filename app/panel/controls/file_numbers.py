@@ -19,7 +19,7 @@ class FileNumbers:
         self.editing, self.settings = editing, settings
         things = editing.numbers(settings.params)
         self.fields: dict[str, viser.GuiTextHandle] = {}
-        self.shown: tuple[str, dict[str, float]] | None = None  # the choice, and its numbers
+        self.choice_numbers: tuple[str, dict[str, float]] | None = None  # the choice, and its numbers
         if not things:
             return
         with gui.add_folder(editing.title, expand_by_default=False):
@@ -53,8 +53,8 @@ class FileNumbers:
         if not self.fields:
             return
         now = self.chooser.value, dict(self.editing.numbers(self.settings.params)[self.chooser.value])
-        if now != self.shown:
-            self.shown = now
+        if now != self.choice_numbers:
+            self.choice_numbers = now
             for name, value in now[1].items():
                 self.fields[name].value = write_number(value)
 

@@ -48,10 +48,10 @@ class Axes(NamedTuple):
     def is_of(self, params: SpringParams) -> bool:
         """True if nothing but step and stiffness has changed since."""
         moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
-        return shown(dataclasses.replace(self.params, **moved)) == shown(params)
+        return map_values(dataclasses.replace(self.params, **moved)) == map_values(params)
 
 
-def shown(params: SpringParams) -> tuple[object, ...]:
+def map_values(params: SpringParams) -> tuple[object, ...]:
     """The values that a map depends on."""
     names = [name for name, parameter in parameters_of(params).items() if parameter.affects != "look"]
     return tuple(getattr(params, name) for name in names)

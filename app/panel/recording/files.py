@@ -87,7 +87,7 @@ class Files:
             CHARTS: lambda _: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
             PICTURE: self.picture_file,
             REPLAY: lambda _: self.replay_file(),
-            ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
+            ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.all_frames())),
         }
         if not self.busy.acquire(blocking=False):
             client.add_notification(name, "Another file is still being created.", auto_close_seconds=10.0)
@@ -110,8 +110,8 @@ class Files:
 
     def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the shown moment as one page. Raises ValueError if nothing was recorded."""
-        last = self.recorder.shown
-        frames = [frame for frame in self.recorder.kept() if last is None or frame.time <= last.time]
+        last = self.recorder.shown_frame
+        frames = [frame for frame in self.recorder.all_frames() if last is None or frame.time <= last.time]
         page = self.make_replay(self.settings.kind, frames, self.plots.plotted())
         return file_name(self.settings, ".html"), page.encode()
 

@@ -229,7 +229,7 @@ class Recorder:
                 self.playing = False
 
     @property
-    def shown(self) -> RecordedFrame | None:
+    def shown_frame(self) -> RecordedFrame | None:
         """The frame to show instead of the present; None for the present."""
         with self.lock:
             return None if self.position is None else self.frames[self.position]
@@ -242,7 +242,7 @@ class Recorder:
             before = (self.frames[i] for i in range(self.position, -1, -1))
             return next((frame for frame in before if frame.state is not None), None)
 
-    def kept(self) -> tuple[RecordedFrame, ...]:
+    def all_frames(self) -> tuple[RecordedFrame, ...]:
         """All frames, the oldest first."""
         with self.lock:
             return tuple(self.frames)

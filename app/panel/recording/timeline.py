@@ -41,7 +41,7 @@ class Timeline:
 
     def hold(self) -> None:
         """Pause the lab for a look back."""
-        if self.recorder.shown is None:
+        if self.recorder.shown_frame is None:
             self.ran_before = self.is_running
         self.settings.post(Pause())
 
@@ -62,7 +62,7 @@ class Timeline:
 
     def go_live(self, _: float) -> None:
         """Show the present; the lab runs again if it ran before the look back."""
-        if self.recorder.shown is not None and self.ran_before:
+        if self.recorder.shown_frame is not None and self.ran_before:
             self.settings.post(Play())
         self.recorder.show_present()
 
@@ -87,7 +87,7 @@ class Timeline:
         """Update the pages. running: the lab runs."""
         self.is_running = running
         now = time.monotonic()
-        recorder, frame = self.recorder, self.recorder.shown
+        recorder, frame = self.recorder, self.recorder.shown_frame
         present = None if frame is None else frame.time, recorder.playing, recorder.line.number
         if present == self.told and now - self.span_at < SPAN_INTERVAL:
             return

@@ -49,21 +49,21 @@ class SnapshotValues(Mapping[str, LiveValue]):
 
     def __init__(self, kind: AnyKind, snapshot: AnySnapshot) -> None:
         self.quantities, self.snapshot = kind.quantities, snapshot
-        self.found: dict[str, LiveValue | None] = {}
+        self.by_name: dict[str, LiveValue | None] = {}
         for name, parameter in parameters_of(snapshot.params).items():
             value: Value = getattr(snapshot.params, name)
             meaning = parameter.title or in_words(name)
             is_named = isinstance(value, bool | str)
-            self.found[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
+            self.by_name[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
         status = snapshot.status
-        self.found["time"] = LiveNumber(status.time, "s", "Time")
-        self.found["diverged"] = status.state.has_stopped or status.state.replays
+        self.by_name["time"] = LiveNumber(status.time, "s", "Time")
+        self.by_name["diverged"] = status.state.has_stopped or status.state.replays
 
     def __getitem__(self, name: str) -> LiveValue:
         """The value of this name. Raises KeyError if the scene does not have it now."""
-        if name not in self.found:
-            self.found[name] = self.computed(name)
-        value = self.found[name]
+        if name not in self.by_name:
+            self.by_name[name] = self.computed(name)
+        value = self.by_name[name]
         if value is None:
             raise KeyError(name)
         return value
@@ -78,7 +78,7 @@ class SnapshotValues(Mapping[str, LiveValue]):
         return LiveNumber(value, quantity.unit, quantity.meaning, floor)
 
     def __iter__(self) -> Iterator[str]:
-        return iter([name for name in dict.fromkeys((*self.found, *self.quantities)) if name in self])
+        return iter([name for name in dict.fromkeys((*self.by_name, *self.quantities)) if name in self])
 
     def __len__(self) -> int:
         return len(list(iter(self)))
@@ -229,7 +229,7 @@ class GuideTab:
         self.refusal = ""  # reason why the last request was refused
         self.unwritten = ""  # reason why a step could not be ticked off at the last look
         self.pictures = ReportPictures(workbook)
-        self.shown: Task | None = None
+        self.shown_task: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
         with tab:
@@ -270,7 +270,9 @@ class GuideTab:
         """Take a picture of a browser's view for the report, named by scene and time."""
         now = self.values.get("time")
         at = f"-{now.value:.0f}s" if isinstance(now, LiveNumber) else ""
-        self.pictures.start(client, task, f"{self.kind.name}{at}", lambda: self.shown is self.workbook.task is task)
+        self.pictures.start(
+            client, task, f"{self.kind.name}{at}", lambda: self.shown_task is self.workbook.task is task
+        )
 
     def attempt(self, action: Callable[[], None]) -> str:
         """Try an action; returns the reason for a failure, or ""."""
@@ -301,7 +303,7 @@ class GuideTab:
                 self.unwritten = self.attempt(lambda: self.workbook.watch(task, self.values))
         if self.workbook.revision != self.revision:
             self.revision, stale = self.workbook.revision, True
-        if task is not self.shown:
+        if task is not self.shown_task:
             self.refusal = self.unwritten = ""
             self.show_task(task)
         elif refresh or stale:
@@ -322,7 +324,7 @@ class GuideTab:
                 self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
         self.again.show(self.controls_of(task))
         self.show_values(task)
-        self.shown = task
+        self.shown_task = task
 
     def controls_of(self, task: Task) -> tuple[str, ...]:
         """Names of the parameters that a task is about: those of its steps, and of the values that it shows."""
@@ -402,7 +404,7 @@ class GuideTab:
 
     def close(self) -> None:
         """End, and save the texts that are being typed."""
-        self.shown = None
+        self.shown_task = None
         self.flush()
 
     def flush(self) -> None:

@@ -120,13 +120,13 @@ class Hanger:
             name, self.shapes[0], np.concatenate([faces, tube_faces(2) + np.uint32(len(sphere))]),
             color=HANGER_COLOUR, cast_shadow=False, visible=False,
         )  # fmt: skip
-        self.shown: tuple[float, ...] = ()
+        self.pose: tuple[float, ...] = ()
 
     def show(self, end: NDArray[np.float32] | None, *, from_below: bool) -> None:
         """Move to an end of the rope (3,) [m]; None: draw nothing."""
         self.mesh.visible = end is not None
-        if end is not None and (*end.tolist(), from_below) != self.shown:
-            self.shown = (*end.tolist(), from_below)
+        if end is not None and (*end.tolist(), from_below) != self.pose:
+            self.pose = (*end.tolist(), from_below)
             set_arrays(self.mesh, vertices=self.shapes[from_below] + end)
 
 
@@ -136,13 +136,13 @@ class Weight:
     def __init__(self, server: viser.ViserServer) -> None:
         self.unit_ball, faces = ball()
         self.mesh = server.scene.add_mesh_simple("/weight", self.unit_ball, faces, color=HANGER_COLOUR, visible=False)
-        self.shown: tuple[float, ...] = ()
+        self.state: tuple[float, ...] = ()
 
     def show(self, tip: NDArray[np.float32], mass: float) -> None:
         """Move to the tip (3,) [m]. mass: [kg], 0 without a weight."""
         self.mesh.visible = mass > 0.0
-        if mass > 0.0 and (*tip.tolist(), mass) != self.shown:
-            self.shown = (*tip.tolist(), mass)
+        if mass > 0.0 and (*tip.tolist(), mass) != self.state:
+            self.state = (*tip.tolist(), mass)
             radius = (0.75 * mass / (math.pi * STONE)) ** (1.0 / 3.0)
             set_arrays(self.mesh, vertices=(radius * self.unit_ball + tip).astype(np.float32))
 

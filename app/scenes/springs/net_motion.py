@@ -71,9 +71,9 @@ class NetMotion:
         """Advance a copy of the state in place. net: with the motions that a user causes."""
         advance(net, state, self.method, self.step, steps, with_account=with_account)
 
-    def holds(self, found: Extremes) -> bool:
+    def holds(self, extremes: Extremes) -> bool:
         """True if a state with these extremes is within the bounds; False of a NaN."""
-        return found.reach < self.max_reach
+        return extremes.reach < self.max_reach
 
     def place_pin(self, column: int, position: Vector) -> None:
         """Put a particle of the first row to rest at a position [m]."""

@@ -53,7 +53,7 @@ def set_differences(f, p_2, p_1, p, p1, p2, along, across):
 
 
 @kernel(noalias=True)
-def set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, kept, foam):
+def set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, decay, foam):
     """A row of slopes, in place of the differences hx, hy of the height, and its foam; sums of foam and (J - 1)^2."""
     foamy, strain = np.float32(0.0), np.float32(0.0)
     for j in range(np.uint64(hx.size)):
@@ -65,7 +65,7 @@ def set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, kept, foam):
         zx, zy = (d * by_x - b * by_y) * stretch, (a * by_y - b * by_x) * stretch
         shorter = STEEPEST / max(np.sqrt(zx * zx + zy * zy), STEEPEST)
         hx[j], hy[j] = zx * shorter, zy * shorter
-        white = max(foam[j] * kept, min(max((limit - J) * sharpness, ZERO), ONE))
+        white = max(foam[j] * decay, min(max((limit - J) * sharpness, ZERO), ONE))
         foam[j] = white
         foamy += white
         strain += (J - ONE) * (J - ONE)

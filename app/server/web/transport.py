@@ -39,8 +39,8 @@ class Transport:
         self.sent: collections.Counter[str] = collections.Counter()
         self.counting_thread: int | None = None
         self.picture: list[object] = []  # messages of the picture under way
-        self.given = threading.Event()  # viser has the last picture
-        self.given.set()
+        self.delivery = threading.Event()  # viser has the last picture
+        self.delivery.set()
         self.loop = server.get_event_loop()
         self.send_together = watch_messages(server, self.take)
 
@@ -78,7 +78,7 @@ class Transport:
     def hand_over(self, picture: Sequence[object]) -> None:
         """Give viser the messages of a picture on its event loop, after those of the picture before."""
         self.wait()
-        event = self.given = threading.Event()
+        event = self.delivery = threading.Event()
 
         def send_all() -> None:
             # It cannot be split: the loop composes no message while this runs on it.
@@ -92,4 +92,4 @@ class Transport:
 
     def wait(self) -> None:
         """Wait until viser has the last frame, before another thread removes nodes."""
-        self.given.wait(MAX_WAIT)
+        self.delivery.wait(MAX_WAIT)

@@ -52,6 +52,6 @@ def measure_maps(*, quick: bool, out: Path | None, workers: int = 0) -> int:
     return 0
 
 
-def named_figure(name: str, figure: Callable[[Any], Any], found: Any) -> dict[str, Any]:
+def named_figure(name: str, figure: Callable[[Any], Any], maps: Any) -> dict[str, Any]:
     """The figure of a map, by its name."""
-    return {name: figure(found)}
+    return {name: figure(maps)}

@@ -95,10 +95,10 @@ def deviations(row: DampingRow) -> NDArray[np.float64]:
     return np.where(equal, 0.0, np.abs(np.where(equal, 1.0, row.measured) / np.where(either > 0.0, either, 1e-9) - 1.0))
 
 
-def rows(found: list[DampingRow]) -> list[dict[str, Any]]:
+def rows(damping_rows: list[DampingRow]) -> list[dict[str, Any]]:
     """The table: how far `critical_step` is from the measured limit, for each network and integrator."""
     table = []
-    for row in found:
+    for row in damping_rows:
         apart = deviations(row)
         table.append(
             {
@@ -111,7 +111,7 @@ def rows(found: list[DampingRow]) -> list[dict[str, Any]]:
     return table
 
 
-def curve_rows(found: list[DampingRow]) -> list[dict[str, Any]]:
+def curve_rows(damping_rows: list[DampingRow]) -> list[dict[str, Any]]:
     """The measured limit and `critical_step`, for each network, integrator and damping."""
     return [
         {
@@ -121,7 +121,7 @@ def curve_rows(found: list[DampingRow]) -> list[dict[str, Any]]:
             "step measured [s]": float(a),
             "critical_step [s]": float(c),
         }
-        for row in found
+        for row in damping_rows
         for b, a, c in zip(row.dampings, row.measured, row.theory, strict=True)
         if not math.isnan(a)
     ]

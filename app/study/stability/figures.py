@@ -107,12 +107,12 @@ def rope_figure(maps: list[RopeMap]) -> Any:
     return figure
 
 
-def damping_figure(found: list[DampingRow]) -> Any:
+def damping_figure(damping_rows: list[DampingRow]) -> Any:
     """Measured limits as marks and `critical_step` as lines, for each network; methods without a limit are left out."""
-    names = list(dict.fromkeys(row.net for row in found))
+    names = list(dict.fromkeys(row.net for row in damping_rows))
     figure, lowest, grid = panels(len(names), "The largest stable step over damping: marks measured, lines by theory")
     for axes, name in zip(grid, names, strict=True):
-        limited = [row for row in found if row.net == name and np.isfinite(row.theory[1:]).any()]
+        limited = [row for row in damping_rows if row.net == name and np.isfinite(row.theory[1:]).any()]
         for index, row in enumerate(limited):
             colour, marker = PALETTE[index % 8], MARKERS[index % 8]
             axes.loglog(row.dampings, row.theory, color=colour, linewidth=1.2)

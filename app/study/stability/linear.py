@@ -68,43 +68,43 @@ def measure(quick: bool = False, workers: int = 0) -> list[LinearMap]:
     return maps
 
 
-def deviations(found: LinearMap) -> NDArray[np.float64]:
+def deviations(linear_map: LinearMap) -> NDArray[np.float64]:
     """Relative distance (rows,) of the measured limit from theory; NaN where neither has one."""
-    measured, theory = found.measured, found.theory
-    seen = theory <= found.steps[-1]
+    measured, theory = linear_map.measured, linear_map.theory
+    seen = theory <= linear_map.steps[-1]
     apart = np.full(len(theory), math.nan)
-    for i in np.flatnonzero(np.isfinite(found.rates[:, 0])):
+    for i in np.flatnonzero(np.isfinite(linear_map.rates[:, 0])):
         if seen[i] or math.isfinite(measured[i]):
             near_0 = max(measured[i], theory[i]) < ZERO_LIMIT
             apart[i] = 0.0 if near_0 else abs(measured[i] - theory[i]) / max(min(measured[i], theory[i]), 1e-9)
     return apart
 
 
-def disagreements(found: LinearMap) -> tuple[int, int, int]:
+def disagreements(linear_map: LinearMap) -> tuple[int, int, int]:
     """Three numbers of cells: (disagree, not within 2 % of the limit, stable again).
 
     A cell disagrees if it grows below the limit of theory, or is stable above it. Not counted are cells that are stable
     again above cells that grow: theory gives the lowest limit only.
     """
-    z, limit = found.steps[None, :], found.theory[:, None]
-    grows = found.rates > 0.0
+    z, limit = linear_map.steps[None, :], linear_map.theory[:, None]
+    grows = linear_map.rates > 0.0
     again = ~grows & np.logical_or.accumulate(grows, axis=1)
-    wrong = (grows != (z > limit)) & ~again & ~np.isnan(found.rates)
+    wrong = (grows != (z > limit)) & ~again & ~np.isnan(linear_map.rates)
     return int(wrong.sum()), int((wrong & (np.abs(z - limit) > LIMIT_TOLERANCE * limit)).sum()), int(again.sum())
 
 
-def extra_damping(found: LinearMap) -> NDArray[np.float64]:
+def extra_damping(linear_map: LinearMap) -> NDArray[np.float64]:
     """Damping ratio (rows, cols) that the method adds to that of the oscillator, for the slower of its two modes."""
-    zeta = found.zetas[:, None]
+    zeta = linear_map.zetas[:, None]
     own = np.where(zeta > 1.0, zeta - np.sqrt(np.maximum(zeta**2 - 1.0, 0.0)), zeta)
-    return -found.rates / found.steps[None, :] - own
+    return -linear_map.rates / linear_map.steps[None, :] - own
 
 
-def right_up_to(found: LinearMap) -> float:
+def right_up_to(linear_map: LinearMap) -> float:
     """The largest h omega of the map up to which an undamped oscillator is right to 1 %, measured; 0: none."""
-    wrong = (found.errors[0] > TOLERANCE) | (found.rates[0] > 0.0)
+    wrong = (linear_map.errors[0] > TOLERANCE) | (linear_map.rates[0] > 0.0)
     first = int(wrong.argmax()) if wrong.any() else len(wrong)
-    return float(found.steps[first - 1]) if first else 0.0
+    return float(linear_map.steps[first - 1]) if first else 0.0
 
 
 def rows(maps: list[LinearMap]) -> list[dict[str, Any]]:

@@ -78,12 +78,12 @@ def add_measures(
     measures: dict[str, Measure],
     index: int,
     times: tuple[float, ...],
-    found: dict[str, list[float]],
+    values: dict[str, list[float]],
     labels: dict[str, tuple[str, str]],
 ) -> None:
-    """Write the measures at times[index] into `found` and `labels`, as `Outcome` has them."""
+    """Write the measures at times[index] into `values` and `labels`, as `Outcome` has them."""
     for name, measure in measures.items():
-        found.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
+        values.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
         labels[name] = measure.unit, measure.meaning
 
 

@@ -135,14 +135,14 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
     return dataclasses.replace(spec, notes=unused_in_all(spec, table(content, "set")))
 
 
-def unused_in_all(spec: Spec, given: dict[str, Any]) -> tuple[str, ...]:
+def unused_in_all(spec: Spec, values: dict[str, Any]) -> tuple[str, ...]:
     """Lines on the given parameters without effect in all cases, by the others of the first case."""
-    unused = set(given)
+    unused = set(values)
     for index in range(len(spec.cases)):
         unused &= spec.kind.hidden(spec.params(index))
         if not unused:
             return ()
-    first = Setup(spec.scene, spec.params(0), {name: value for name, value in given.items() if name in unused})
+    first = Setup(spec.scene, spec.params(0), {name: value for name, value in values.items() if name in unused})
     return tuple(without_effect(first))
 
 
@@ -159,37 +159,37 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     return dict(with_values(plotted, {**setup.values, **table(content, "set")}).values)
 
 
-def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
+def read_axis(name: str, parameter: Parameter, entry: Any, design: str) -> Axis:
     """The list or range of a swept parameter. Raises ValueError."""
-    if isinstance(given, list):
-        if not given:
-            raise argument_error(name, given, RANGE)
-        values = tuple(check_value(name, parameter, value) for value in given)
+    if isinstance(entry, list):
+        if not entry:
+            raise argument_error(name, entry, RANGE)
+        values = tuple(check_value(name, parameter, value) for value in entry)
         if len(set(values)) < len(values):
-            raise ValueError(f"{name}: {given!r} holds a value twice")
+            raise ValueError(f"{name}: {entry!r} holds a value twice")
         return Listed(values)
-    if not isinstance(given, dict) or not {"from", "to"} <= given.keys():
-        raise argument_error(name, given, RANGE)
-    for key in given:
+    if not isinstance(entry, dict) or not {"from", "to"} <= entry.keys():
+        raise argument_error(name, entry, RANGE)
+    for key in entry:
         if key not in ("from", "to", "count", "log"):
-            raise argument_error(f"{name}.{key}", given[key], RANGE)
+            raise argument_error(f"{name}.{key}", entry[key], RANGE)
     if parameter.choices or parameter.kind is bool:
-        raise argument_error(name, given, f"a list of values, {parameter.allowed}")
-    low, high = check_value(f"{name}.from", parameter, given["from"]), check_value(f"{name}.to", parameter, given["to"])
+        raise argument_error(name, entry, f"a list of values, {parameter.allowed}")
+    low, high = check_value(f"{name}.from", parameter, entry["from"]), check_value(f"{name}.to", parameter, entry["to"])
     if not low < high:
         raise argument_error(f"{name}.to", high, f"above from, {low:g}")
-    log = given.get("log", False)
+    log = entry.get("log", False)
     if not isinstance(log, bool):
         raise argument_error(f"{name}.log", log, "true or false")
     if log and low <= 0:
         raise argument_error(f"{name}.from", low, "above 0 where log is true")
     if design == "random":
-        if "count" in given:
+        if "count" in entry:
             raise ValueError(f"{name}.count: belongs to a grid; in a random design `cases` is their number")
         return Range(low, high, 0, log)
-    if "count" not in given:
+    if "count" not in entry:
         raise ValueError(f"{name}.count: missing; a grid needs the number of values")
-    return Range(low, high, whole(given, "count", 0, 2, MAX_CASES, name), log)
+    return Range(low, high, whole(entry, "count", 0, 2, MAX_CASES, name), log)
 
 
 def grid_axis(name: str, parameter: Parameter, axis: Axis) -> tuple[Any, ...]:

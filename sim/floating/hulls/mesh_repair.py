@@ -84,17 +84,17 @@ def divided(vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> np.nda
     if not on:
         return faces
     whole = np.array([not any((row[i - 1], row[i]) in on for i in range(3)) for row in faces.tolist()])
-    found, left = [], faces[~whole].tolist()
+    pieces, left = [], faces[~whole].tolist()
     while left:
         face = left.pop()
         turned = ((face[i - 2], face[i - 1], face[i]) for i in range(3))
         edge = next(((a, b, c) for a, b, c in turned if (a, b) in on and c not in on[a, b]), None)
         if edge is None:
-            found.append(face)
+            pieces.append(face)
         else:
             a, b, c = edge
             left.extend([u, v, c] for u, v in itertools.pairwise([a, *on[a, b], b]))
-    return np.concatenate([faces[whole], np.array(found, faces.dtype).reshape(-1, 3)])
+    return np.concatenate([faces[whole], np.array(pieces, faces.dtype).reshape(-1, 3)])
 
 
 def mirrored(vertices: np.ndarray, faces: np.ndarray, axis: str, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
@@ -135,7 +135,7 @@ def loops_of(edges: np.ndarray) -> list[list[int]]:
     after: dict[int, list[int]] = {}
     for a, b in edges.tolist():
         after.setdefault(a, []).append(b)
-    found = []
+    loops = []
     while after:
         start = next(iter(after))
         loop, place = [], start
@@ -148,8 +148,8 @@ def loops_of(edges: np.ndarray) -> list[list[int]]:
             if place == start:
                 break
         if place == start and len(loop) > 2:
-            found.append(loop)
-    return found
+            loops.append(loop)
+    return loops
 
 
 def capped(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -172,7 +172,7 @@ def filled(points: np.ndarray, loop: list[int]) -> np.ndarray:
     """
     x, y = points[loop].T
     area = 0.5 * float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
-    turn, left, found = 1.0 if area >= 0.0 else -1.0, list(loop), []
+    turn, left, triangles = 1.0 if area >= 0.0 else -1.0, list(loop), []
     least = SMALLEST_EAR * abs(area)
     while len(left) > 3:
         ear = next((i for i in range(len(left)) if is_ear(points, left, i, turn, least)), None)
@@ -180,11 +180,11 @@ def filled(points: np.ndarray, loop: list[int]) -> np.ndarray:
             ear = next((i for i in range(len(left)) if abs(corner_area(points, left, i)) <= least), None)
         if ear is None:
             raise argument_error("cap", "deck", SIMPLE_LOOP)
-        found.append([left[ear - 1], left[ear], left[(ear + 1) % len(left)]])
+        triangles.append([left[ear - 1], left[ear], left[(ear + 1) % len(left)]])
         del left[ear]
     if turn * corner_area(points, left, 1) < -least:
         raise argument_error("cap", "deck", SIMPLE_LOOP)
-    return np.array([*found, left], np.int64)
+    return np.array([*triangles, left], np.int64)
 
 
 def corner_area(points: np.ndarray, loop: list[int], i: int) -> float:

@@ -86,10 +86,10 @@ def by_meshio(path: Path) -> Mesh:
     said = io.StringIO()  # it prints its errors, and ends the program
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            found = meshio.read(path)
-        points = np.asarray(found.points, float)
+            mesh = meshio.read(path)
+        points = np.asarray(mesh.points, float)
         points = points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
-        kinds = found.cells_dict
+        kinds = mesh.cells_dict
     except SystemExit as error:
         raise unread(path, said.getvalue()) from error
     except Exception as error:  # its readers raise errors of many types
@@ -112,18 +112,18 @@ def unread(path: Path, error: object) -> ValueError:
 
 def panels(path: Path, read: Callable[["Words"], "Panels"]) -> tuple[Mesh, str]:
     """The whole hull of a file of panels, and its unit."""
-    found = read(Words(path))
-    vertices, faces = found.vertices, triangles_of(found.corners)
+    content = read(Words(path))
+    vertices, faces = content.vertices, triangles_of(content.corners)
     size = float(np.ptp(vertices, axis=0).max())
     if not np.isfinite(vertices).all() or not size > 0.0:
         raise argument_error("path", str(path), "panels with finite corners that differ")
     vertices, faces = welded(vertices, faces, SAME_CORNER * size)
-    for axis in found.mirrors:
+    for axis in content.mirrors:
         try:
             vertices, faces = mirrored(vertices, faces, axis, SAME_CORNER * size)
         except ValueError as error:
             raise ValueError(f"path: {path}: {error}") from None
-    return Mesh(vertices, faces), found.unit
+    return Mesh(vertices, faces), content.unit
 
 
 class Panels(NamedTuple):
@@ -165,19 +165,19 @@ class Words:
         words = self.words[self.at : self.at + count]
         self.at += count
         try:
-            found = np.array([float(word.replace("D", "E").replace("d", "e")) for word in words])
+            numbers = np.array([float(word.replace("D", "E").replace("d", "e")) for word in words])
         except ValueError:
-            found = np.zeros(0)
-        if len(found) < count or count == 0:
+            numbers = np.zeros(0)
+        if len(numbers) < count or count == 0:
             raise argument_error("path", str(self.path), f"a mesh with {count or 'some'} numbers of {what}")
-        return found
+        return numbers
 
     def counts(self, count: int, what: str, low: int, high: int) -> list[int]:
         """The next whole numbers from low to high. Raises ValueError for others."""
-        found = self.numbers(count, what)
-        if not ((found == np.rint(found)) & (found >= low) & (found <= high)).all():
+        numbers = self.numbers(count, what)
+        if not ((numbers == np.rint(numbers)) & (numbers >= low) & (numbers <= high)).all():
             raise argument_error("path", str(self.path), f"whole numbers from {low} to {high} of {what}")
-        return [int(one) for one in found]
+        return [int(one) for one in numbers]
 
 
 def read_gdf(words: Words) -> Panels:

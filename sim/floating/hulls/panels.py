@@ -36,7 +36,7 @@ def areas_of(triangles: np.ndarray) -> np.ndarray:
 
 def below_surface(triangles: np.ndarray) -> np.ndarray:
     """The parts of triangles (t, 3, 3) below z = 0, as triangles turned the same way."""
-    found = [triangles[(triangles[:, :, 2] <= 0.0).all(axis=1)]]
+    parts = [triangles[(triangles[:, :, 2] <= 0.0).all(axis=1)]]
     for triangle in triangles[(triangles[:, :, 2] > 0.0).any(axis=1) & (triangles[:, :, 2] < 0.0).any(axis=1)]:
         polygon = []
         for p, q in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
@@ -46,8 +46,8 @@ def below_surface(triangles: np.ndarray) -> np.ndarray:
                 point = p + p[2] / (p[2] - q[2]) * (q - p)
                 point[2] = 0.0
                 polygon.append(point)
-        found.append(np.array([[polygon[0], polygon[i], polygon[i + 1]] for i in range(1, len(polygon) - 1)]))
-    wet = np.concatenate([part.reshape(-1, 3, 3) for part in found])
+        parts.append(np.array([[polygon[0], polygon[i], polygon[i + 1]] for i in range(1, len(polygon) - 1)]))
+    wet = np.concatenate([part.reshape(-1, 3, 3) for part in parts])
     area = areas_of(wet)
     dry_deck = (wet[:, :, 2] >= 0.0).all(axis=1)
     return wet[(area > MIN_SHARE * area.sum()) & ~dry_deck]

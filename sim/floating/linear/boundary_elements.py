@@ -61,12 +61,12 @@ def solve(
     water = {"body": body, "water_depth": np.inf, "g": 1.0, "rho": 1.0}
 
     def radiate(omega: float) -> tuple[np.ndarray, np.ndarray]:
-        found = [
+        results = [
             solver.solve(capytaine.RadiationProblem(radiating_dof=name, omega=omega, **water), keep_details=False)
             for name in names
         ]
-        a = np.array([[result.added_masses[name] for name in names] for result in found])
-        b = np.array([[result.radiation_dampings[name] for name in names] for result in found])
+        a = np.array([[result.added_masses[name] for name in names] for result in results])
+        b = np.array([[result.radiation_dampings[name] for name in names] for result in results])
         return (a + a.T) / 2, (b + b.T) / 2
 
     added, damping, excitation = [], [], []
@@ -104,8 +104,10 @@ def make_table(
     Raises ValueError for a mesh of too many triangles, ModuleNotFoundError without Capytaine.
     """
     length = table_length(hull)
-    found = [solve(*wet_surface(hull, draft), DIRECTIONS, progress=progress) for draft in drafts]
-    stacked: dict[str, Any] = {field: np.array([[getattr(one, field) for one in found]]) for field in Solution._fields}
+    solutions = [solve(*wet_surface(hull, draft), DIRECTIONS, progress=progress) for draft in drafts]
+    stacked: dict[str, Any] = {
+        field: np.array([[getattr(one, field) for one in solutions]]) for field in Solution._fields
+    }
     return LinearTable(
         aspect=np.ones(1), draft=np.array(drafts, float) / length, direction=DIRECTIONS,
         frequency=np.array(FREQUENCIES), **stacked,

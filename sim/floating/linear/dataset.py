@@ -317,33 +317,33 @@ def of_body(dataset: "Dataset", name: str, body: str) -> np.ndarray | None:
         if body not in names:
             return None
         values = values.isel({axis: names.index(body)})
-    found = values.values
-    return found.astype(float) if found.dtype.kind in "iuf" and np.isfinite(found).all() else None
+    array = values.values
+    return array.astype(float) if array.dtype.kind in "iuf" and np.isfinite(array).all() else None
 
 
 def draft_of(dataset: "Dataset", path: str, body: str, draft: float | None) -> float:
     """The draft [m] as given, or that of the dataset. Raises ValueError if neither is there."""
     if draft is not None:
         return check_positive("draft", draft, "m")
-    found = of_body(dataset, "draught", body)
-    if found is None or found.ndim:
+    draught = of_body(dataset, "draught", body)
+    if draught is None or draught.ndim:
         raise argument_error("draft", draft, "a number above 0 m, as the dataset has no draught")
-    return check_positive("draft", float(found), "m")
+    return check_positive("draft", float(draught), "m")
 
 
-def centre_of(dataset: "Dataset", path: str, body: str, given: Sequence[float] | None) -> np.ndarray:
+def centre_of(dataset: "Dataset", path: str, body: str, center: Sequence[float] | None) -> np.ndarray:
     """The point (3,) [m] that the motions are about, as given, or that of the dataset.
 
     Without a centre of rotation it is the centre of mass. Raises ValueError if none is there.
     """
-    if given is not None:
-        return np.array(check_vector("rotation_center", given, "m"))
+    if center is not None:
+        return np.array(check_vector("rotation_center", center, "m"))
     for name in ("rotation_center", "center_of_mass"):
-        found = of_body(dataset, name, body)
-        if found is not None and found.shape == (3,):
-            return found
+        point = of_body(dataset, name, body)
+        if point is not None and point.shape == (3,):
+            return point
     allowed = "a point (x, y, z) [m] that its motions are about, as the dataset has neither that nor a center_of_mass"
-    raise argument_error("rotation_center", given, allowed)
+    raise argument_error("rotation_center", center, allowed)
 
 
 def scalar(dataset: "Dataset", name: str, path: str) -> float:
@@ -376,13 +376,13 @@ def numbers(
     if axes is not None and set(values.dims) != set(axes):
         along = ", ".join(map(str, values.dims)) or "none"
         raise argument_error("path", path, f"a dataset with {name} along {', '.join(axes)}; in this one: {along}")
-    found = np.asarray((values if axes is None else values.transpose(*axes)).values)
-    if found.dtype.kind not in ("iufc" if name in FORCES else "iuf"):
-        raise argument_error("path", path, f"a dataset of numbers; {name} has {found.dtype}")
-    bad = ~(np.isfinite(found) | (allow_infinite & (found == np.inf)))
+    array = np.asarray((values if axes is None else values.transpose(*axes)).values)
+    if array.dtype.kind not in ("iufc" if name in FORCES else "iuf"):
+        raise argument_error("path", path, f"a dataset of numbers; {name} has {array.dtype}")
+    bad = ~(np.isfinite(array) | (allow_infinite & (array == np.inf)))
     if check and bad.any():
         raise argument_error("path", path, f"a dataset of finite numbers; of {name} {int(bad.sum())} are not")
-    return found
+    return array
 
 
 def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> int:

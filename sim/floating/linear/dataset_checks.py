@@ -27,15 +27,15 @@ def doubts_of(
 
     omega (n,) [rad/s], rising.
     """
-    found = [*doubts_of_matrices(omega, added, damping, motions), *doubts_of_forces(omega, X, motions)]
-    return found or doubts_of_damping(omega, table, motions)
+    doubts = [*doubts_of_matrices(omega, added, damping, motions), *doubts_of_forces(omega, X, motions)]
+    return doubts or doubts_of_damping(omega, table, motions)
 
 
 def doubts_of_matrices(
     omega: np.ndarray, added: np.ndarray, damping: np.ndarray, motions: tuple[str, ...]
 ) -> list[str]:
     """Warnings on added mass and damping (n, 6, 6) at rising omega (n,) [rad/s], as a file has them."""
-    found = []
+    doubts = []
     for i, motion in enumerate(motions):
         own, like = damping[:, i, i], next(kind for kind in KINDS if i in kind)
         largest = float(np.abs(damping[:, i, i]).max())
@@ -43,10 +43,10 @@ def doubts_of_matrices(
             at = int(own.argmin())
             said = f"damping {own[at]:.3g}, {own[at] / largest:.2g} of its largest value,"
             where = place(motion, omega[at])
-            found += beyond("dataset", "damping over its largest value", float(own[at]) / largest, where, said)
+            doubts += beyond("dataset", "damping over its largest value", float(own[at]) / largest, where, said)
         for what, values in (("added mass", added[:, i, i]), ("damping", own)):
-            found += spike(what, values, motion, omega)
-    return [*found, *asymmetry("added mass", added, omega, motions), *asymmetry("damping", damping, omega, motions)]
+            doubts += spike(what, values, motion, omega)
+    return [*doubts, *asymmetry("added mass", added, omega, motions), *asymmetry("damping", damping, omega, motions)]
 
 
 def doubts_of_forces(omega: np.ndarray, X: np.ndarray, motions: tuple[str, ...]) -> list[str]:

@@ -73,9 +73,9 @@ class WaveExcitation:
         if not (np.array_equal(waves.kx, self.kx) and np.array_equal(waves.ky, self.ky)):
             self.kx, self.ky, self.impulses = waves.kx.copy(), waves.ky.copy(), ()
             self.check_headings(fleet, waves.kx, waves.ky, waves.amplitude)
-            found = [kind.beyond_long_waves(k) for kind in self.kinds]
-            self.tables = np.array([rest for rest, _ in found]).reshape(len(found), len(k), len(DIRECTIONS), 6)
-            self.is_long = np.array([is_long for _, is_long in found]).reshape(len(found), len(k))
+            pairs = [kind.beyond_long_waves(k) for kind in self.kinds]
+            self.tables = np.array([rest for rest, _ in pairs]).reshape(len(pairs), len(k), len(DIRECTIONS), 6)
+            self.is_long = np.array([is_long for _, is_long in pairs]).reshape(len(pairs), len(k))
             self.averaged = np.array([widened(k, width) for width in self.widths]).reshape(len(self.kinds), len(k))
             self.omega = np.zeros(0)
             self.responses = np.zeros((len(self.kind), 2 * RESPONSES, len(k)))
@@ -108,11 +108,11 @@ class WaveExcitation:
             heading = self.kinds[q].heading
             away = np.abs(within_half_turn(bearing - heading_angle(fleet.rotation[b]) - heading))
             if (away > HEADING_TOLERANCE).any():  # False for nan: all headings
-                given = (
+                description = (
                     f"a hull with a dataset of {heading:.4g} rad only, in waves up to {away.max():.3g} rad from that"
                 )
                 allowed = "waves of that heading, or a dataset of headings all around"
-                raise argument_error(f"bodies[{b}]", given, allowed)
+                raise argument_error(f"bodies[{b}]", description, allowed)
 
 
 def rate_of_change(values: Sequence[np.ndarray], h: float) -> np.ndarray:

@@ -154,17 +154,17 @@ class LinearHull(NamedTuple):
         scaled = (beyond / nodes[:, None, None] ** LONG_POWERS).reshape(len(nodes), -1)
         powers = np.tile(LONG_POWERS, len(DIRECTIONS))
         index, weights = lagrange(self.frequency, np.minimum(omega(k, 1.0, self.depth), self.frequency[-1]))
-        table, found = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
+        table, rest = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
         for piece in pieces(len(k), PIECE):
             for i, one in enumerate(k[piece].tolist(), start=piece.start):
                 if one < nodes[0]:
-                    found[i] = (one / nodes[0]) ** FADING_POWER * beyond[0].ravel()
+                    rest[i] = (one / nodes[0]) ** FADING_POWER * beyond[0].ravel()
                 elif is_long[i]:
-                    found[i] = one**powers * (weights[i] @ scaled[index[i]])
+                    rest[i] = one**powers * (weights[i] @ scaled[index[i]])
                 else:
                     fade = math.exp(-max(one - nodes[-1], 0.0) * self.length * BEYOND)
-                    found[i] = fade * (weights[i] @ table[index[i]])
-        return found.reshape(len(k), len(DIRECTIONS), 6), is_long
+                    rest[i] = fade * (weights[i] @ table[index[i]])
+        return rest.reshape(len(k), len(DIRECTIONS), 6), is_long
 
 
 def radiated_share(k: float, depth: float) -> float:
@@ -261,15 +261,15 @@ def check_water_depth(name: str, hull: Hull, depth: float) -> None:
         right = f"its coefficients are right for waves up to {2.0 * depth:.3g} m long"
         warnings.warn(f"{words}; {right}", ApproximationWarning, stacklevel=3)
     elif not abs(depth - own) <= SAME_WATER * own:
-        given = f"a hull with a dataset of water {own:.6g} m deep, in water of {depth:.6g} m"
-        raise argument_error(name, given, "water of the dataset's depth, or a dataset of the water's")
+        description = f"a hull with a dataset of water {own:.6g} m deep, in water of {depth:.6g} m"
+        raise argument_error(name, description, "water of the dataset's depth, or a dataset of the water's")
 
 
 def check_bed(name: str, hull: Hull, draft: float, depth: float) -> None:
     """Raises ValueError for a hull that is afloat at a draft [m] in water of a depth [m] that is less."""
     if min(draft, float(hull.size[2])) > depth:
-        given = f"a hull of draft {draft:.6g} m, in water {depth:.6g} m deep"
-        raise argument_error(name, given, "water that is deeper than its draft")
+        description = f"a hull of draft {draft:.6g} m, in water {depth:.6g} m deep"
+        raise argument_error(name, description, "water that is deeper than its draft")
 
 
 def is_boxed(hull: Hull, draft: float) -> bool:
@@ -293,14 +293,14 @@ def check_box(name: str, hull: Hull, draft: float) -> None:
         return
     parts, size = waterplane_of(hull, draft)
     box, own = box_of(hull, draft), (*size, draft)
-    found = [f"{parts} parts at the waterline"] if parts > 1 else []
+    differences = [f"{parts} parts at the waterline"] if parts > 1 else []
     for quantity, a, b in zip(("length", "width", "draft"), box, own, strict=True):
         if not MAX_UNLIKE**-1 * b <= a <= MAX_UNLIKE * b:
-            found.append(f"a {quantity} of {b:.3g} m, and the box with its volume and waterplane {a:.3g} m")
-    if found:
+            differences.append(f"a {quantity} of {b:.3g} m, and the box with its volume and waterplane {a:.3g} m")
+    if differences:
         allowed = "a hull with coefficients of its own: `springtide hydrodynamics FILE` computes them"
         raise argument_error(
-            name, f"{hull.shape.name} with {'; '.join(found)}", f"{allowed}, `with_dataset` reads them"
+            name, f"{hull.shape.name} with {'; '.join(differences)}", f"{allowed}, `with_dataset` reads them"
         )
 
 
@@ -372,9 +372,9 @@ def table_hull(hull: Hull, draft: float) -> LinearHull:
     if is_sunken(hull, draft):
         draft = DEEPEST * float(hull.size[2])
     table, aspect, depth, length, turned, is_round = place_in_table(hull, draft)
-    found = interpolated(table, aspect, depth)
-    excitation = around(found.excitation, table.direction)
-    a, b, infinite = found.added_mass, found.damping, found.infinite
+    coefficients = interpolated(table, aspect, depth)
+    excitation = around(coefficients.excitation, table.direction)
+    a, b, infinite = coefficients.added_mass, coefficients.damping, coefficients.infinite
     if turned:  # the tables have the long side along x: a quarter turn
         quarter = np.zeros((6, 6))
         quarter[0, 1], quarter[1, 0], quarter[2, 2] = -1.0, 1.0, 1.0
@@ -457,9 +457,12 @@ def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable
     def value(array: np.ndarray, powers: int) -> np.ndarray:
         scale = nodes if powers == 1 else nodes[:, :, None] * nodes[:, None, :]
         back = here if powers == 1 else np.outer(here, here)
-        found = np.tensordot(v, array[j], 1)[i]
+        at_aspect = np.tensordot(v, array[j], 1)[i]
         return (
-            np.tensordot(u, found / scale.reshape(len(i), *[1] * (found.ndim - 1 - powers), *scale.shape[1:]), 1) * back
+            np.tensordot(
+                u, at_aspect / scale.reshape(len(i), *[1] * (at_aspect.ndim - 1 - powers), *scale.shape[1:]), 1
+            )
+            * back
         )
 
     damping = value(table.damping, 2)
@@ -479,8 +482,8 @@ def not_negative(damping: np.ndarray) -> np.ndarray:
     """The nearest damping (n, 6, 6) that gives no energy to any motion; interpolation and datasets may miss that."""
     size = np.sqrt(np.abs(np.einsum("nii->ni", damping)).max(axis=0)) + 1e-12
     values, vectors = np.linalg.eigh(damping / np.outer(size, size))
-    kept = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
-    return kept * np.outer(size, size)
+    positive_part = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
+    return positive_part * np.outer(size, size)
 
 
 def lagrange(nodes: np.ndarray, x: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -578,10 +581,10 @@ def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
 
     One that sinks has those of the deepest draft. An `ApproximationWarning` as of `linear_hull`.
     """
-    found = coefficients_afloat(hull, density, layers)
-    if found.approximation:
-        warnings.warn(found.approximation, ApproximationWarning, stacklevel=2)
-    return found
+    coefficients = coefficients_afloat(hull, density, layers)
+    if coefficients.approximation:
+        warnings.warn(coefficients.approximation, ApproximationWarning, stacklevel=2)
+    return coefficients
 
 
 @functools.lru_cache(maxsize=256)
@@ -612,8 +615,8 @@ def plane_force(hull: Hull, draft: float) -> PlaneForce:
     d' of the depth, which is 1, x or y (Newman 1977, section 6.16).
     """
     x, nz = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(area_vectors(hull.vertices, hull.faces)[:, 2])
-    found = displaced(x, np.ascontiguousarray(hull.faces.T), nz, hull.extents[2, 0] + draft - x[2])
-    V, Vx, Vy, Vz, A, Ax, Ay, Axx, Ayy, Axy = found.tolist()
+    integrals = displaced(x, np.ascontiguousarray(hull.faces.T), nz, hull.extents[2, 0] + draft - x[2])
+    V, Vx, Vy, Vz, A, Ax, Ay, Axx, Ayy, Axy = integrals.tolist()
     along_x = [-V, 0.0, Ax, Axy, -Axx - Vz, Vy]
     along_y = [0.0, -V, Ay, Ayy + Vz, -Axy, -Vx]
     return PlaneForce(np.array([0.0, 0.0, A, Ay, -Ax, 0.0]), np.array([along_x, along_y]))

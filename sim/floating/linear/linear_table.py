@@ -41,9 +41,9 @@ class LinearTable(NamedTuple):
 
 def table_from(arrays: Mapping[str, np.ndarray]) -> LinearTable:
     """The table in the arrays of a file. Raises KeyError, TypeError or ValueError for other arrays."""
-    given = {field: arrays[field] for field in LinearTable._fields if field in arrays}
-    numbers = {field: float(given[field]) for field in LinearTable._field_defaults if field in given}
-    table = LinearTable(**{**given, **numbers})
+    fields = {field: arrays[field] for field in LinearTable._fields if field in arrays}
+    numbers = {field: float(fields[field]) for field in LinearTable._field_defaults if field in fields}
+    table = LinearTable(**{**fields, **numbers})
     if not_finite(table):
         raise ValueError(f"{not_finite(table)} is not finite")
     return table

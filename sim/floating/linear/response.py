@@ -90,16 +90,16 @@ def linear_forces(
     body: Body, frequency: ArrayLike, heading: ArrayLike = 0.0, layers: Layers | None = None, water: Water | None = None
 ) -> LinearForces:
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
-    given = as_array("frequency", frequency, "finite numbers above 0 rad/s")
-    if not ((given > 0.0) & (given < math.inf)).all():
-        raise argument_error("frequency", given.tolist(), "finite numbers above 0 rad/s")
+    omega = as_array("frequency", frequency, "finite numbers above 0 rad/s")
+    if not ((omega > 0.0) & (omega < math.inf)).all():
+        raise argument_error("frequency", omega.tolist(), "finite numbers above 0 rad/s")
     headings = as_array("heading", heading, "angles from -2 pi to 2 pi rad")
     if not (np.abs(headings) <= 2.0 * math.pi).all():
         raise argument_error("heading", headings.tolist(), "angles from -2 pi to 2 pi rad")
     try:
-        np.broadcast_shapes(given.shape, headings.shape)
+        np.broadcast_shapes(omega.shape, headings.shape)
     except ValueError:
-        allowed = f"a shape that goes with that of frequency, {given.shape}"
+        allowed = f"a shape that goes with that of frequency, {omega.shape}"
         raise argument_error("heading", headings.shape, allowed) from None
     if water is not None:
         check_body("body", body)
@@ -107,7 +107,7 @@ def linear_forces(
         check_water_depth("water", body.hull, water.depth)
     own = upright_body(body, layers, water)
     return LinearForces(
-        own.mass, own.stiffness, *own.radiation(given), own.excitation(given, headings), own.centre
+        own.mass, own.stiffness, *own.radiation(omega), own.excitation(omega, headings), own.centre
     )  # fmt: skip
 
 

@@ -129,8 +129,8 @@ def check_pose(body: Body) -> None:
 def checked_inertia(inertia: object) -> np.ndarray:
     """The inertia (3, 3) [kg m2] of a matrix, or of the moments about three axes. Raises ValueError for another."""
     allowed = "(3,) moments or a symmetric (3, 3) matrix [kg m2], all above 0, none above the sum of the other two"
-    given = as_array("inertia", inertia, allowed)
-    matrix = np.diag(given) if given.shape == (3,) else given
+    array = as_array("inertia", inertia, allowed)
+    matrix = np.diag(array) if array.shape == (3,) else array
     if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T):
         raise argument_error("inertia", inertia, allowed)
     moments = np.linalg.eigvalsh(matrix)
@@ -277,8 +277,8 @@ def pack_linear(
 ) -> tuple[np.ndarray, PackedLinear]:
     """Linear coefficients of hulls of given densities [kg/m3], each set once, and the index (n,) of each hull's."""
     fluids = check_layers(layers)
-    found = [afloat(hull, float(density), fluids) for hull, density in zip(hulls, densities, strict=True)]
-    unique = list({id(one): one for one in found}.values())
+    coefficients = [afloat(hull, float(density), fluids) for hull, density in zip(hulls, densities, strict=True)]
+    unique = list({id(one): one for one in coefficients}.values())
     number = {id(one): i for i, one in enumerate(unique)}
     s = len(unique)
     added = np.array([one.linear.infinite for one in unique]).reshape(s, 6, 6)
@@ -291,7 +291,7 @@ def pack_linear(
         coupled_count[i] = len(pairs)
         coupled[i, : len(pairs)] = pairs
         residues[i, : len(pairs)] = one.memory.residues[:, pairs[:, 0], pairs[:, 1]].T
-    return np.array([number[id(one)] for one in found], dtype=np.int64), PackedLinear(
+    return np.array([number[id(one)] for one in coefficients], dtype=np.int64), PackedLinear(
         added_factor=np.array([lower_factor(one) for one in added]).reshape(s, 6, 6),
         poles=np.array([one.memory.poles for one in unique], dtype=complex).reshape(s, len(POLES)),
         coupled=coupled,

@@ -167,21 +167,21 @@ def float_in(
     for words in unstable(bodies, state.layers):
         warnings.warn(words, UserWarning, stacklevel=2)
     steps, h = equal_steps(float(t[1]), step)
-    kept = FloatFrames(state, t, h, steps)
-    run_frames(kept, len(t), progress)
+    history = FloatFrames(state, t, h, steps)
+    run_frames(history, len(t), progress)
     sea.at(np.empty((0, 2)), state.t)  # the last step has asked for its middle
-    x, rotation, velocity, spin, lift = kept.results
-    return FloatRun(start + t, x, rotation, velocity, spin, lift, kept.surface)
+    x, rotation, velocity, spin, lift = history.results
+    return FloatRun(start + t, x, rotation, velocity, spin, lift, history.surface)
 
 
 def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
     """A sentence with the GM of each load of a hull that floats, but is not stable upright."""
-    fluids, found = check_layers(layers), {}
+    fluids, sentences = check_layers(layers), {}
     for i, body in enumerate(bodies):
         load = body.loaded()
-        if load in found or load[1] > fluids[-1][0]:
+        if load in sentences or load[1] > fluids[-1][0]:
             continue
-        found[load], rest = "", near_upright(Loaded(*load, fluids))
+        sentences[load], rest = "", near_upright(Loaded(*load, fluids))
         if rest is not None and not is_stable(load[0], rest):
-            found[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
-    return [words for words in found.values() if words]
+            sentences[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
+    return [words for words in sentences.values() if words]

@@ -51,8 +51,8 @@ class WindowMean:
         if self.means_at != self.count:  # else no sample was taken since
             self.means, self.means_at = {}, self.count
         if i not in self.means:
-            shown = np.arange(self.count - length, self.count) % len(self.samples)
-            self.means[i] = fading_window(length) @ self.samples[shown, i]
+            window = np.arange(self.count - length, self.count) % len(self.samples)
+            self.means[i] = fading_window(length) @ self.samples[window, i]
         return self.means[i]
 
 

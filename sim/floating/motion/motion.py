@@ -452,8 +452,8 @@ def set_forces(fleet, water, coefficients, i, density, pose, scratch):
     # Of the volume at rest: the change by a wave is of second order, and would lift the body on average.
     carried = min(m, density * m / fleet.density[i]) * scratch.felt[2]
     if water.excitation.shape[0] > 0:
-        given = water.excitation[i]
-        set_six(load, to_heading(heading, linear_part(given)), to_heading(heading, angular_part(given)))
+        excitation = water.excitation[i]
+        set_six(load, to_heading(heading, linear_part(excitation)), to_heading(heading, angular_part(excitation)))
         for c in range(6):
             load[c] *= density * scratch.felt[c]
     else:

@@ -16,12 +16,12 @@ __all__ = ["SHAPES", "Appearance", "Immersed", "Shape"]
 
 def _discover() -> dict[str, Shape]:
     """Name -> shape of every file of this folder, in the order that the shapes declare."""
-    found: list[Shape] = []
+    shapes: list[Shape] = []
     for module in pkgutil.iter_modules(__path__):
         shape = getattr(importlib.import_module(f"{__name__}.{module.name}"), "SHAPE", None)
         if isinstance(shape, Shape):
-            found.append(shape)
-    return {shape.name: shape for shape in sorted(found, key=lambda shape: (shape.order, shape.name))}
+            shapes.append(shape)
+    return {shape.name: shape for shape in sorted(shapes, key=lambda shape: (shape.order, shape.name))}
 
 
 SHAPES = _discover()

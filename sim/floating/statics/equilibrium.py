@@ -81,8 +81,8 @@ def check_layers(layers: Layers) -> tuple[tuple[float, float], ...]:
     """`layers`, in any sequence, as pairs of floats. Raises ValueError for bad ones."""
     wanted = "(density, thickness) pairs from the top, densities not falling, the last thickness inf and only that"
     try:
-        given = list(layers)
-        pairs = tuple((as_float(density), as_float(thickness)) for density, thickness in given)
+        sequence = list(layers)
+        pairs = tuple((as_float(density), as_float(thickness)) for density, thickness in sequence)
     except (TypeError, ValueError):
         raise argument_error("layers", layers, wanted) from None
     good = bool(pairs) and math.isinf(pairs[-1][1])
@@ -93,5 +93,5 @@ def check_layers(layers: Layers) -> tuple[tuple[float, float], ...]:
         good = good and thickness >= 0 and (last or thickness < math.inf)
         above = density
     if not good:
-        raise argument_error("layers", given, wanted)
+        raise argument_error("layers", sequence, wanted)
     return pairs

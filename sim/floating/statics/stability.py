@@ -85,8 +85,8 @@ def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
 
     def excess(level: float) -> tuple[float, float]:
         """Mass [kg] of the displaced fluids over the body's, and its derivative [kg/m]."""
-        found = under(level)
-        return float(found[0]) - weight, float(found[4])
+        integrals = under(level)
+        return float(integrals[0]) - weight, float(integrals[4])
 
     low, high = float(x[2].min()), float(x[2].max()) + steps[-1][1]
     level = float(narrowed(excess, low, high, ROUND_OFF * (high - low), has_slope=True)[1])
@@ -116,16 +116,16 @@ def rest_of(loaded: Loaded) -> Balance:
     Raises ValueError if no such angle is within MAX_TILT, ConvergenceError if the search does not converge.
     """
     start = balance_at(loaded, UPRIGHT)
-    found = near_upright(loaded)
-    if found is not None and is_stable(loaded.hull, found):
-        return found
+    balance = near_upright(loaded)
+    if balance is not None and is_stable(loaded.hull, balance):
+        return balance
     for _ in range(2):  # over an edge, and again over a corner
-        rest = settled(loaded, balance_at(loaded, leaning(found)) if found else start, np.abs)
+        rest = settled(loaded, balance_at(loaded, leaning(balance)) if balance else start, np.abs)
         if rest is None:
             break
         if is_stable(loaded.hull, rest):
             return rest
-        found = rest
+        balance = rest
     allowed = "a body that is stable within 60 degrees of upright: one with a lower center_of_gravity, or a wider one"
     raise argument_error("body", f"GM = {start.least_height:.3g} m", allowed)
 
@@ -150,19 +150,19 @@ def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndar
     over: of the metacentric heights (2,), those that a step divides by. As they are, it leads to the next balance;
     their sizes lead downhill, to a stable one.
     """
-    size, found = float(loaded.hull.size.max()), start
+    size, balance = float(loaded.hull.size.max()), start
     for turn in range(MAX_TURNS):
-        if np.abs(found.arm).max() < (LEVEL if turn == 0 else 0.01 * LEVEL) * size:
-            return found
-        heights, axes = np.linalg.eigh(found.restoring)
+        if np.abs(balance.arm).max() < (LEVEL if turn == 0 else 0.01 * LEVEL) * size:
+            return balance
+        heights, axes = np.linalg.eigh(balance.restoring)
         divided = over(heights)
         divided = np.copysign(np.maximum(np.abs(divided), LEVEL * size), divided)
-        step = -axes @ (axes.T @ found.arm / divided)
+        step = -axes @ (axes.T @ balance.arm / divided)
         step *= min(1.0, MAX_TURN / float(np.linalg.norm(step)))
-        found = balance_at(loaded, without_heading(product(tilted(step), found.rotation)))
-        if found.tilt > MAX_TILT:
+        balance = balance_at(loaded, without_heading(product(tilted(step), balance.rotation)))
+        if balance.tilt > MAX_TILT:
             return None
-    raise ConvergenceError("rest of a floating body", f"arms of {np.abs(found.arm).max():.3g} m", MAX_TURNS)
+    raise ConvergenceError("rest of a floating body", f"arms of {np.abs(balance.arm).max():.3g} m", MAX_TURNS)
 
 
 def tilted(tilt: np.ndarray) -> Quaternion:

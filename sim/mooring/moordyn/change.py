@@ -23,9 +23,9 @@ def changed_moordyn(
     a line or type that the file does not have, a number that is not above 0, and a file that cannot be read.
     """
     text, wrong = content.decode("utf-8", "surrogateescape"), Refusals()
-    found = split_sections(text, wrong)
+    sections = split_sections(text, wrong)
     wrong.check()
-    lines, types, points = (found.get(name, Section([], [])) for name in (LINES, TYPES, POINTS))
+    lines, types, points = (sections.get(name, Section([], [])) for name in (LINES, TYPES, POINTS))
     known = {int(row.words[0]) for row in points.rows if row.words[0].isdecimal()}
     place = 4 if ends_first(lines, known) else 2
     rows = text.splitlines(keepends=True)

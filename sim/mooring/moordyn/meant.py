@@ -19,31 +19,31 @@ def doubts(
     water: Water,
 ) -> list[str]:
     """A warning on each part of a deck that physics, or the other parts, contradict."""
-    found = [text for kind in types for text in doubts_of_type(kind)]
-    found += beyond("deck", "gravity", water.gravity, "OPTIONS")
-    found += beyond("deck", "density of the water", water.density, "OPTIONS") if water.density else []
+    warnings = [text for kind in types for text in doubts_of_type(kind)]
+    warnings += beyond("deck", "gravity", water.gravity, "OPTIONS")
+    warnings += beyond("deck", "density of the water", water.density, "OPTIONS") if water.density else []
     for point in points.values():
         if point.mass > 0.0 and point.volume > 0.0:
-            found += beyond("point", "density", point.mass / point.volume, f"point {point.id}")
-    return [*found, *doubts_of_places(points, lines, water.depth), *doubts_of_lengths(points, lines)]
+            warnings += beyond("point", "density", point.mass / point.volume, f"point {point.id}")
+    return [*warnings, *doubts_of_places(points, lines, water.depth), *doubts_of_lengths(points, lines)]
 
 
 def doubts_of_type(kind: LineType) -> list[str]:
     """Warnings on the numbers of a line type."""
     where = f"line type {kind.name}"
-    found = beyond("line type", "diameter", kind.diameter, where)
+    warnings = beyond("line type", "diameter", kind.diameter, where)
     if not kind.volume > 0.0:
-        return found
+        return warnings
     density, modulus = kind.mass / kind.volume, kind.stiffness / kind.volume
     said = f"{kind.mass:g} kg/m in a diameter of {kind.diameter:g} m, {density:.3g} kg/m3,"
-    found += beyond("line type", "density", density, where, said) if kind.mass > 0.0 else []
+    warnings += beyond("line type", "density", density, where, said) if kind.mass > 0.0 else []
     name = "EA over the section of a line of metal" if density > METAL else "EA over the section"
     said = f"EA {kind.stiffness:g} N in a diameter of {kind.diameter:g} m, {modulus:.3g} Pa,"
-    found += beyond("line type", name, modulus, where, said) if not kind.curve else []
+    warnings += beyond("line type", name, modulus, where, said) if not kind.curve else []
     for name, value in (("Cd", kind.drag_across), ("Ca", kind.added_across), ("Cd", kind.drag_along),
                         ("Ca", kind.added_along)):  # fmt: skip
-        found += beyond("line type", name, value, where)
-    return found
+        warnings += beyond("line type", name, value, where)
+    return warnings
 
 
 def doubts_of_places(points: Mapping[int, Point], lines: Mapping[int, Line], depth: float) -> list[str]:
@@ -51,18 +51,18 @@ def doubts_of_places(points: Mapping[int, Point], lines: Mapping[int, Line], dep
     held = [point for point in points.values() if point.kind == "fixed"]
     if points and all(point.position[2] > 0.0 for point in points.values()):
         return [f"{WARNING}no point is under water: is z positive downwards? Here z is up from the surface"]
-    found = []
+    warnings = []
     for point in held:
         z = point.position[2]
         others = [one for one in held if one.id != point.id and is_alike(one, point, lines)]
         on_bed = [one for one in others if abs(one.position[2] + depth) <= ON_BED * depth]
         if z > 0.0 and any(abs(one.position[2] + z) <= SAME * z for one in others):
-            found.append(
+            warnings.append(
                 f"{WARNING}point {point.id} lies {z:g} m above the water, {named(others)} {z:g} m below it: its sign?"
             )
         elif on_bed and (z + depth) / depth > ON_BED:
-            found.append(f"{WARNING}anchor {point.id} lies {z + depth:.4g} m above the bed, {named(on_bed)} on it")
-    return found
+            warnings.append(f"{WARNING}anchor {point.id} lies {z + depth:.4g} m above the bed, {named(on_bed)} on it")
+    return warnings
 
 
 def named(points: Sequence[Point]) -> str:
@@ -82,7 +82,7 @@ def is_alike(one: Point, other: Point, lines: Mapping[int, Line]) -> bool:
 
 def doubts_of_lengths(points: Mapping[int, Point], lines: Mapping[int, Line]) -> list[str]:
     """Warnings on lines that are much shorter or longer than the distance of their ends."""
-    found = []
+    warnings = []
     for line in lines.values():
         if {line.start, line.end} - points.keys():
             continue
@@ -93,8 +93,8 @@ def doubts_of_lengths(points: Mapping[int, Point], lines: Mapping[int, Line]) ->
         way = math.dist(start[:2], end[:2]) + abs(start[2] - end[2])
         where = f"line {line.id}"
         said = f"{line.length:g} m between ends that are {distance:.4g} m apart"
-        found += beyond("line", "length over the distance of its ends", line.length / distance, where,
-                        f"{said}, {line.length / distance:.3g} of the distance,")  # fmt: skip
-        found += beyond("line", "length over the way along the bed and up", line.length / way, where,
-                        f"{said}, {line.length / way:.3g} times the way along the bed and up,")  # fmt: skip
-    return found
+        warnings += beyond("line", "length over the distance of its ends", line.length / distance, where,
+                           f"{said}, {line.length / distance:.3g} of the distance,")  # fmt: skip
+        warnings += beyond("line", "length over the way along the bed and up", line.length / way, where,
+                           f"{said}, {line.length / way:.3g} times the way along the bed and up,")  # fmt: skip
+    return warnings

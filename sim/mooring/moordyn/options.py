@@ -34,36 +34,36 @@ class Options(NamedTuple):
 
 def read_options(rows: list[Row], wrong: Refusals) -> Options:
     """The options; refusals go to `wrong`."""
-    found = Options({}, [], [])
+    options = Options({}, [], [])
     for row in rows:
         with wrong:
-            add_option(found, row)
-    return found
+            add_option(options, row)
+    return options
 
 
-def add_option(found: Options, row: Row) -> None:
+def add_option(options: Options, row: Row) -> None:
     """Add the option of a row: VALUE NAME, and text."""
     where = f"{OPTIONS}, line {row.number}"
     value, name = check_columns(where, row.words, 2, max(len(row.words), 2))[:2]
     key, where = name.lower(), f"{where}: {name}"
     if key in STEERING:
-        found.steering.append(name)
+        options.steering.append(name)
     elif key in WATER:
         if value.strip("\"'").lower() not in ("", "none") and (
             number_of(value) is None or number_in(where, value) != 0.0
         ):
-            found.warnings.append(
+            options.warnings.append(
                 f"{name} {value}: waves and currents of files are not read; set `{WATER[key]}` of the System"
             )
     elif key in BED or (key == "wtrdpth" and number_of(value) is None and "." in value):
-        found.warnings.append(
+        options.warnings.append(
             f"{name} {value}: the bed is level here, at the depth of the lowest anchor; set `water` of the System"
         )
     elif key in FIELDS:
         field = FIELDS[key]
         number = number_in(where, value)
-        if found.fields.get(field, number) != number:
-            raise argument_error(where, number, f"the number of its synonym in this file, {found.fields[field]:g}")
-        found.fields[field] = number
+        if options.fields.get(field, number) != number:
+            raise argument_error(where, number, f"the number of its synonym in this file, {options.fields[field]:g}")
+        options.fields[field] = number
     else:
-        found.warnings.append(f"{name} {value}: an unknown option, left out")
+        options.warnings.append(f"{name} {value}: an unknown option, left out")

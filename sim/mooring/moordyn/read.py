@@ -54,30 +54,36 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
         from sim.inputs.kinds import check_file  # a start without a file does without it
 
         check_file("file", path, ("deck",), "a deck of MoorDyn")
-    found = split_sections(read_text(path) if content is None else decoded(content), wrong)
-    needed = (TYPES, LINES) if RODS in found and found[RODS].rows else (TYPES, POINTS, LINES)
+    sections = split_sections(read_text(path) if content is None else decoded(content), wrong)
+    needed = (TYPES, LINES) if RODS in sections and sections[RODS].rows else (TYPES, POINTS, LINES)
     for name in needed:
-        if name not in found or not found[name].rows:
+        if name not in sections or not sections[name].rows:
             with wrong:
                 raise argument_error("file", str(path.name), f"a MoorDyn file with a section {name}")
-    kinds = read_rows(found.get(TYPES), TYPES, "name", lambda row: read_type(row, path.parent), lambda t: t.name, wrong)
-    bodies = read_rows(found.get(BODIES), BODIES, "ID", read_body, lambda body: body.id, wrong)
+    kinds = read_rows(
+        sections.get(TYPES), TYPES, "name", lambda row: read_type(row, path.parent), lambda t: t.name, wrong
+    )
+    bodies = read_rows(sections.get(BODIES), BODIES, "ID", read_body, lambda body: body.id, wrong)
     points: dict[int, Point] = {}
-    if len(bodies) == count_of(found.get(BODIES)):  # else their points would be refused, too
-        points = read_rows(found.get(POINTS), POINTS, "ID", lambda row: read_point(row, bodies), lambda p: p.id, wrong)
+    if len(bodies) == count_of(sections.get(BODIES)):  # else their points would be refused, too
+        points = read_rows(
+            sections.get(POINTS), POINTS, "ID", lambda row: read_point(row, bodies), lambda p: p.id, wrong
+        )
     rods: dict[int, Rod] = {}
-    if len(bodies) == count_of(found.get(BODIES)):
-        steel = read_rows(found.get(ROD_TYPES), ROD_TYPES, "name", read_rod_type, lambda t: t.name, wrong)
-        rods = read_rows(found.get(RODS), RODS, "ID", lambda row: read_rod(row, steel, bodies), lambda r: r.id, wrong)
-    whole = len(points) == count_of(found.get(POINTS)) and len(rods) == count_of(found.get(RODS))
+    if len(bodies) == count_of(sections.get(BODIES)):
+        steel = read_rows(sections.get(ROD_TYPES), ROD_TYPES, "name", read_rod_type, lambda t: t.name, wrong)
+        rods = read_rows(
+            sections.get(RODS), RODS, "ID", lambda row: read_rod(row, steel, bodies), lambda r: r.id, wrong
+        )
+    whole = len(points) == count_of(sections.get(POINTS)) and len(rods) == count_of(sections.get(RODS))
     ends = add_ends(rods.values(), points)
     lines: dict[int, Any] = {}
-    if len(kinds) == count_of(found.get(TYPES)) and whole and LINES in found:
-        order = ends_first(found[LINES], points)
+    if len(kinds) == count_of(sections.get(TYPES)) and whole and LINES in sections:
+        order = ends_first(sections[LINES], points)
         read = lambda row: read_line(row, order, kinds, points, ends)  # noqa: E731
-        lines = read_rows(found[LINES], LINES, "ID", read, lambda line: line.id, wrong)
-    left = [column_left_out(found[POINTS])] if POINTS in found else []
-    options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
+        lines = read_rows(sections[LINES], LINES, "ID", read, lambda line: line.id, wrong)
+    left = [column_left_out(sections[POINTS])] if POINTS in sections else []
+    options = read_options(sections[OPTIONS].rows if OPTIONS in sections else [], wrong)
     wrong.check()
     depth = depth_of(options.fields, points.values(), options.warnings)
     fields = {name: value for name, value in options.fields.items() if name != "depth"}
@@ -141,24 +147,24 @@ def read_rows(
     section: Section | None, name: str, key: str, read: Callable[[Row], T], key_of: Callable[[T], Any], wrong: Refusals
 ) -> dict[Any, T]:
     """The rows of a section by their keys; refusals go to `wrong`."""
-    found: dict[Any, T] = {}
+    entries: dict[Any, T] = {}
     for row in section.rows if section is not None else ():
         with wrong:
             one = read(row)
-            if key_of(one) in found:
+            if key_of(one) in entries:
                 raise argument_error(f"{name}, line {row.number}: {key}", key_of(one), "one that no other row has")
-            found[key_of(one)] = one
-    return found
+            entries[key_of(one)] = one
+    return entries
 
 
 def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[str]) -> float:
     """The depth of the water [m]: that of the lowest fixed point if none or less is given, as in MoorDyn."""
     lowest = -min((point.position[2] for point in points if point.kind == "fixed"), default=0.0)
-    given = fields.get("depth", 0.0)
-    if not max(lowest, given) > 0.0:
+    depth = fields.get("depth", 0.0)
+    if not max(lowest, depth) > 0.0:
         raise argument_error(f"{OPTIONS}: WtrDpth", fields.get("depth"), "the depth of the water [m]")
-    if "depth" in fields and lowest > given * (1.0 + 1e-6):
-        said.append(f"WtrDpth {given:g}: the water is {lowest:g} m deep, as a fixed point is below the bed")
+    if "depth" in fields and lowest > depth * (1.0 + 1e-6):
+        said.append(f"WtrDpth {depth:g}: the water is {lowest:g} m deep, as a fixed point is below the bed")
         return lowest
     return fields.get("depth", lowest)
 

@@ -106,16 +106,16 @@ def read_rod(row: Row, types: Mapping[str, RodType], bodies: Mapping[int, FileBo
 
 def add_ends(rods: Iterable[Rod], points: dict[int, Point]) -> dict[str, RodEnd]:
     """Add the points at the ends of rods, and those along rods on free bodies; returns the ends by "1a", "1b"."""
-    found: dict[str, RodEnd] = {}
+    ends: dict[str, RodEnd] = {}
     for rod in rods:
         number = max(points, default=0) + 1
         along = rod.ends[1] - rod.ends[0]
         along = along / max(float(np.linalg.norm(along)), SHORTEST)
         is_held = rod.kind in ("fixed", "coupled") and not rod.is_pinned and bool(along.any())
-        found[f"{rod.id}a"] = RodEnd(number, vector(-along) if is_held else None)
+        ends[f"{rod.id}a"] = RodEnd(number, vector(-along) if is_held else None)
         if rod.length <= SHORTEST:
             points[number] = Point(number, rod.kind, vector(rod.ends[0]), body=rod.body)
-            found[f"{rod.id}b"] = RodEnd(number, vector(along) if is_held else None)
+            ends[f"{rod.id}b"] = RodEnd(number, vector(along) if is_held else None)
             continue
         count = rod.segments if rod.kind == "body" and not rod.turns else 1
         for i, share in enumerate(np.linspace(0.0, 1.0, count + 1)):
@@ -129,8 +129,8 @@ def add_ends(rods: Iterable[Rod], points: dict[int, Point]) -> dict[str, RodEnd]
                     drag_area=part * of.diameter * of.drag, added_mass=of.added,
                 )  # fmt: skip
             points[number + i] = point
-        found[f"{rod.id}b"] = RodEnd(number + count, vector(along) if is_held else None)
-    return found
+        ends[f"{rod.id}b"] = RodEnd(number + count, vector(along) if is_held else None)
+    return ends
 
 
 def add_lines(rods: Collection[Rod], ends: Mapping[str, RodEnd], lines: dict[int, Line]) -> list[str]:

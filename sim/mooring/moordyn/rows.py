@@ -128,9 +128,9 @@ def listed(names: Collection[object]) -> str:
 
 def read_kind(where: str, text: str) -> tuple[str, int | None]:
     """Kind of an attachment, and the number behind it, as in Body2. Raises ValueError for one that is not modelled."""
-    found = ATTACHMENT.fullmatch(text)
-    word = found.group(1).lower() if found else ""
-    number = int(found.group(2)) if found and found.group(2) else None
+    match = ATTACHMENT.fullmatch(text)
+    word = match.group(1).lower() if match else ""
+    number = int(match.group(2)) if match and match.group(2) else None
     for kind, words in (("fixed", FIXED), ("coupled", COUPLED), ("free", FREE), ("body", ("body",))):
         if word in words:
             return kind, number
@@ -208,10 +208,10 @@ def read_end(where: str, text: str, points: Mapping[int, Point], rod_ends: Mappi
         return rod_ends[of_rod[1].lower()]
     if not re.fullmatch(r"(?i)(point|p|con|c)?\d{1,9}", text):
         raise argument_error(f"{where}: attachment", text, "the ID of a point")
-    found = int(re.sub(r"\D", "", text))
-    if found not in points:
+    number = int(re.sub(r"\D", "", text))
+    if number not in points:
         raise argument_error(f"{where}: attachment", text, f"one of the points {listed(points)}")
-    return RodEnd(found, None)
+    return RodEnd(number, None)
 
 
 def ends_first(section: Section, points: Container[int]) -> bool:

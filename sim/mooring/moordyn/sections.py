@@ -55,13 +55,15 @@ def name_of(header: str) -> str:
     """The section that the text between the dashes names, also with more text behind it; "" for another."""
     name = re.sub(r"\s+", " ", header).upper()
     known = (*NAMES, *REFUSED, *UNREAD)
-    found = [one for one in known if re.match(rf"{one}(?![A-Z])", name) or (one == "OUTPUT" and name.startswith(one))]
-    return max(found, key=len, default="")
+    candidates = [
+        one for one in known if re.match(rf"{one}(?![A-Z])", name) or (one == "OUTPUT" and name.startswith(one))
+    ]
+    return max(candidates, key=len, default="")
 
 
 def split_sections(text: str, wrong: Refusals) -> dict[str, Section]:
     """The rows of each section that is read; refusals go to `wrong`."""
-    found: dict[str, Section] = {}
+    sections: dict[str, Section] = {}
     refused: dict[str, int] = {}
     current = ""
     skip, at = 0, 0
@@ -71,12 +73,12 @@ def split_sections(text: str, wrong: Refusals) -> dict[str, Section]:
             name, at = name_of(header.group(1)), number
             current = NAMES.get(name) or REFUSED.get(name, "")
             skip = 0 if current == OPTIONS else 2
-            if current in found:
+            if current in sections:
                 with wrong:
                     raise argument_error(f"line {number}: section", header.group(1), f"one section {current}")
                 current = ""
             elif current in NAMES.values():
-                found[current] = Section([], [])
+                sections[current] = Section([], [])
             elif not current and not name and number > 2 and is_section(header.group(1)):
                 with wrong:
                     raise argument_error(f"line {number}: section", header.group(1), f"one of {sorted(NAMES)}")
@@ -90,16 +92,16 @@ def split_sections(text: str, wrong: Refusals) -> dict[str, Section]:
             skip -= 1
             with wrong:
                 check_names(current, number, line, words)
-            if skip and current in found:
-                found[current].columns.extend(word.lower() for word in words)
-        elif words and current in found:
-            found[current].rows.append(Row(number, words))
+            if skip and current in sections:
+                sections[current].columns.extend(word.lower() for word in words)
+        elif words and current in sections:
+            sections[current].rows.append(Row(number, words))
         elif words:
             refused.setdefault(current, at)
     for name, number in refused.items():
         with wrong:
             raise argument_error(f"line {number}: section", name, "a mooring of lines, points, rods and bodies only")
-    return found
+    return sections
 
 
 def is_section(name: str) -> bool:

@@ -60,11 +60,11 @@ class Laws:
 
     def upward(self, x: Array, on: Pieces) -> Array:
         """Forces (nodes,) [N] of bed and buoyancy at positions x (3, n), each on its piece wherever that ends."""
-        found, volumes = np.zeros(self.p.nodes), self.volumes
-        np.add.at(found, self.node, np.where(on.lies, self.bed * (self.p.bed - x[2, self.node]), 0.0))
+        forces, volumes = np.zeros(self.p.nodes), self.volumes
+        np.add.at(forces, self.node, np.where(on.lies, self.bed * (self.p.bed - x[2, self.node]), 0.0))
         share = np.where(on.in_surface, 0.5 - volumes.middles(x[2]) / volumes.height, 1.0)
-        volumes.add_forces(np.where(on.wet, volumes.whole * share, 0.0), found)
-        return found
+        volumes.add_forces(np.where(on.wet, volumes.whole * share, 0.0), forces)
+        return forces
 
     def with_stiffness(self, on: Pieces, blocks: Array, upright: Array) -> Array:
         """As `Volumes.with_stiffness`, of bed and buoyancy."""

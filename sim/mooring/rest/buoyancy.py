@@ -36,19 +36,19 @@ class Volumes:
         """Heights (k,) of the middles at heights z (n,) of the nodes."""
         return (1.0 - self.way) * z[self.near] + self.way * z[self.far]
 
-    def add_forces(self, lift: Array, found: Array) -> None:
-        """Add forces (k,) [N] at the middles to the upward ones on the nodes, found (nodes,)."""
-        np.add.at(found, self.near, (1.0 - self.way) * lift)
-        np.add.at(found, self.far, self.way * lift)
+    def add_forces(self, lift: Array, forces: Array) -> None:
+        """Add forces (k,) [N] at the middles to the upward ones on the nodes, forces (nodes,)."""
+        np.add.at(forces, self.near, (1.0 - self.way) * lift)
+        np.add.at(forces, self.far, self.way * lift)
 
     def with_stiffness(self, stiffness: Array, blocks: Array, upright: Array) -> Array:
         """The blocks (links, 3, 3) of `Eliminated` with stiffness (k,) [N/m] at the middles.
 
         The rest of it, which is not of the form [H -H; -H H], is added to upright (nodes, 3, 3).
         """
-        found, near, far = blocks.copy(), (1.0 - self.way) * stiffness, self.way * stiffness
+        new_blocks, near, far = blocks.copy(), (1.0 - self.way) * stiffness, self.way * stiffness
         count = len(self.link)
-        np.add.at(found[:, 2, 2], self.link, -(self.way * near)[:count])
+        np.add.at(new_blocks[:, 2, 2], self.link, -(self.way * near)[:count])
         np.add.at(upright[:, 2, 2], self.near, near)
         np.add.at(upright[:, 2, 2], self.far, far)
-        return found
+        return new_blocks

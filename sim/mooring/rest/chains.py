@@ -53,9 +53,9 @@ class Chain:
 
     def solve(self, force: Array) -> Array:
         """Displacements (inner, 3) by forces on the nodes, with the ends held."""
-        found = force.copy()
-        solve_block_tridiagonal(self.diagonal, self.beside.copy(), found)
-        return found
+        displacements = force.copy()
+        solve_block_tridiagonal(self.diagonal, self.beside.copy(), displacements)
+        return displacements
 
     def onto_ends(self, u: Array) -> Array:
         """Forces (2, 3, n) on the ends by displacements (inner, 3, n) of the nodes."""
@@ -194,11 +194,11 @@ class Eliminated:
                 right[at[[0, -1]]] += part.onto_ends(middle[..., None])[..., 0]
                 inner[at[1:-1] - m] = middle
         pull = self.motion.T @ right.reshape(-1) + np.concatenate((own, six))
-        found: Array = np.linalg.solve(self.matrix, pull).astype(np.float64, copy=False) if len(pull) else pull
-        ends = (self.motion @ found).reshape(m, 3)
+        solution: Array = np.linalg.solve(self.matrix, pull).astype(np.float64, copy=False) if len(pull) else pull
+        ends = (self.motion @ solution).reshape(m, 3)
         for (at, _), part in zip(chains.lines, self.parts, strict=True):
             if part is not None:
                 inner[at[1:-1] - m] += part.moves @ np.concatenate((ends[at[0]], ends[at[-1]]))
         return np.concatenate(
-            (np.concatenate((found[: chains.count], inner.reshape(-1)))[chains.order], found[chains.count :])
+            (np.concatenate((solution[: chains.count], inner.reshape(-1)))[chains.order], solution[chains.count :])
         )

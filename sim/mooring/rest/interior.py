@@ -122,25 +122,25 @@ class Pairs:
 
     def forces(self, x: Array, state: InteriorState) -> Array:
         """Forces (nodes, 3) [N] of a state on every node."""
-        p, found = self.p, np.zeros((self.p.nodes, 3))
+        p, forces = self.p, np.zeros((self.p.nodes, 3))
         if p.current.any() or is_declared(p):
             more = np.zeros(3 * p.cols)
             set_rest_forces(np.ascontiguousarray(x).reshape(-1), self.others, more)
-            found += more.reshape(3, p.cols)[:, : p.nodes].T
-        np.add.at(found[:, 2], self.node, -self.weight)
-        found += bending_forces(x, p)
+            forces += more.reshape(3, p.cols)[:, : p.nodes].T
+        np.add.at(forces[:, 2], self.node, -self.weight)
+        forces += bending_forces(x, p)
         if len(p.loads):
-            found += p.loads[: p.nodes]
-        return found + self.forces_of(state.pull[:, 1:], state.press, state.lift)
+            forces += p.loads[: p.nodes]
+        return forces + self.forces_of(state.pull[:, 1:], state.press, state.lift)
 
     def forces_of(self, pull: Array, press: Array, lift: Array) -> Array:
         """Forces (nodes, 3) [N] of links, bed and buoyancy."""
-        found = np.zeros((self.p.nodes, 3))
-        np.add.at(found, self.end, pull)
-        np.add.at(found, self.start, -pull)
-        np.add.at(found[:, 2], self.on_bed, press)
-        self.volumes.add_forces(lift, found[:, 2])
-        return found
+        forces = np.zeros((self.p.nodes, 3))
+        np.add.at(forces, self.end, pull)
+        np.add.at(forces, self.start, -pull)
+        np.add.at(forces[:, 2], self.on_bed, press)
+        self.volumes.add_forces(lift, forces[:, 2])
+        return forces
 
     def pieces(self, state: InteriorState) -> Pieces:
         """The pieces on which all seem to be: forces against lengths, over the stiffness of the lines there."""

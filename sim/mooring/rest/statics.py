@@ -64,10 +64,10 @@ def at_rest(system: MooringParts, placed: dict[int, NDArray[np.float64]] | None 
             continue
         aim = min(aim, NEARER * near.gap)
         for tension, on in near.guesses(laws.pieces_at(near.x)):
-            found = balanced(laws, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
-            if found.is_settled:
-                return rest_of(system, found.x, p)
-            done, left = done + found.corrections, min(left, found.left)
+            balance = balanced(laws, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
+            if balance.is_settled:
+                return rest_of(system, balance.x, p)
+            done, left = done + balance.corrections, min(left, balance.left)
         if done >= MAX_CORRECTIONS:
             break
     raise ConvergenceError("static state of the mooring", f"{left:.3g} N", done)

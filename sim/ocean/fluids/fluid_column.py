@@ -69,8 +69,8 @@ class FluidColumn:
     def surface(self) -> Fluid:
         """The fluid on top."""
         if self.kind == "mixed":
-            found = mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)
-            return found if self.mixture_viscosity is None else found._replace(viscosity=self.mixture_viscosity)
+            mixture = mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)
+            return mixture if self.mixture_viscosity is None else mixture._replace(viscosity=self.mixture_viscosity)
         return self.oil if self.kind == "layer" else self.water
 
     @property

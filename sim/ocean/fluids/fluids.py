@@ -43,15 +43,15 @@ def oil_rows() -> list[dict[str, str]]:
 @cache
 def fluids() -> dict[str, Fluid]:
     """All fluids of oils.csv by name, water first."""
-    found = {}
+    by_name = {}
     for row in oil_rows():
         tensions = [float(row[c]) * 1e-3 if row[c] else None for c in ("surface_tension", "interface_tension")]
         density = float(row["density"])
         index = float(row["refractive_index"]) if row["refractive_index"] else oil_index(density)
-        found[row["name"]] = Fluid(
+        by_name[row["name"]] = Fluid(
             row["name"], density, float(row["viscosity"]) * 1e-3, tensions[0], tensions[1], index, row["colour"]
         )
-    return found
+    return by_name
 
 
 def oil_index(density: float) -> float:

@@ -30,9 +30,9 @@ class Medium:
         check_number("dispersion_scale", self.dispersion_scale, "", 0.0, 1e6)
         check_kind("film", self.film, bool, "True or False")
         for name in ("frequency", "decay"):
-            given = getattr(self, name)
-            if given is not None and not callable(given):
-                raise argument_error(name, given, "a function of the wavenumber, or None")
+            function = getattr(self, name)
+            if function is not None and not callable(function):
+                raise argument_error(name, function, "a function of the wavenumber, or None")
         if self.loop_period is not None:
             check_number("loop_period", self.loop_period, "s", 1e-6, 1e12)
 

@@ -60,8 +60,8 @@ def surface_roots(layers: Layers, film: bool = False) -> tuple[np.ndarray, np.nd
         first = np.abs(_new_shift(shift, 1.0, layers, film)) / layers.surface_omega
         near = first < NEAR
         if near.any():
-            shift[near], found = _solved(shift[near], 1.0, layers.of(near), film)
-            near[near] = found
+            shift[near], is_solved = _solved(shift[near], 1.0, layers.of(near), film)
+            near[near] = is_solved
         if not near.all():
             shift[~near] = _continued(first[~near], layers.of(~near), film)
     omega = layers.surface_omega + shift.imag

@@ -249,10 +249,10 @@ def set_linear(total, first, square, elevation, potential):
 @kernel(noalias=True, inline=True)
 def largest(x):
     """The largest of numbers from 0; NaN counts as 0."""
-    found = 0.0
+    maximum = 0.0
     for i in range(x.size):
-        found = max(found, x[i])
-    return found
+        maximum = max(maximum, x[i])
+    return maximum
 
 
 @kernel(noalias=True, inline=True)

@@ -16,10 +16,10 @@ class BandPlan:
     def __init__(self, grid: RadialGrid, k: np.ndarray) -> None:
         """k (n,) [rad/m]: of the waves that `sums` takes, in their order."""
         self.grid, self.order = grid, np.argsort(k, kind="stable")
-        shown = grid.weights(k[self.order])
-        weight = np.zeros((len(shown), len(k) + len(k) % 2), np.float32)
-        weight[:, : len(k)] = shown
-        count = (shown > 0.0).sum(axis=1)
+        factors = grid.weights(k[self.order])
+        weight = np.zeros((len(factors), len(k) + len(k) % 2), np.float32)
+        weight[:, : len(k)] = factors
+        count = (factors > 0.0).sum(axis=1)
         self.vertices = np.diff(grid.start.astype(np.int64))  # of each band
         self.bands = Bands(grid.x, grid.y, grid.start, (count + count % 2).astype(np.uint64), weight)
         self.evaluated = int((count * self.vertices).sum())  # (wave, vertex) pairs of one sum

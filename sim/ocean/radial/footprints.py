@@ -13,15 +13,15 @@ class Footprints:
     def __init__(self, k: np.ndarray) -> None:
         """k (waves,) [rad/m]."""
         self.k = k
-        self.kept: dict[bytes, np.ndarray] = {}
+        self.by_size: dict[bytes, np.ndarray] = {}
 
     def factors(self, size: np.ndarray) -> np.ndarray:
         """Factors (n, waves) on the waves under hulls of diameters (n,) [m]."""
         key = size.tobytes()
-        if key not in self.kept:
-            if len(self.kept) > MAX_KEPT:
-                self.kept.clear()
+        if key not in self.by_size:
+            if len(self.by_size) > MAX_KEPT:
+                self.by_size.clear()
             unique, which = np.unique(size, return_inverse=True)
             rows = np.array([widened(self.k, float(s)) for s in unique]).reshape(len(unique), len(self.k))
-            self.kept[key] = rows[which]
-        return self.kept[key]
+            self.by_size[key] = rows[which]
+        return self.by_size[key]

@@ -222,26 +222,26 @@ class RadialSea(AnySea):
         if self.slick is not None:
             weight = weight * np.exp(-self.losses(waves.k) * self.slick.paths(where, waves.kx, waves.ky))
         surface = WaveFields(waves.table, weight * waves.amplitude, float(t), self.choppiness)
-        label, residual, found = np.empty((n, 2)), np.empty(n), np.empty((n, 14))
+        label, residual, sums = np.empty((n, 2)), np.empty(n), np.empty((n, 14))
         find_labels(where, surface, TOLERANCE, stop_request(), label, np.empty(n), residual)
         raise_if_stopped()
         if self._interface[0] is not waves:
             self._interface = waves, *interface_of(waves, self._ratios())
         _, responses, gathered = self._interface
-        set_surface(label, surface, responses, found)
-        z, (hx, hy), (a, b, c) = found[:, 0], found[:, 1:3].T, found[:, 3:6].T
+        set_surface(label, surface, responses, sums)
+        z, (hx, hy), (a, b, c) = sums[:, 0], sums[:, 1:3].T, sums[:, 3:6].T
         inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
         # not by @, whose last digit depends on where the arrays lie
         mean, interface_mean = self.choppiness * (gathered[:, None] * np.square(weight)).sum(axis=2)
-        return SurfaceAt(z + mean, slope, found[:, 6:9].copy(), found[:, 9].copy(), found[:, 10] + interface_mean,
-                         found[:, 11:13].copy(), found[:, 13].copy(), label, residual)  # fmt: skip
+        return SurfaceAt(z + mean, slope, sums[:, 6:9].copy(), sums[:, 9].copy(), sums[:, 10] + interface_mean,
+                         sums[:, 11:13].copy(), sums[:, 13].copy(), label, residual)  # fmt: skip
 
     def height_at(self, points: ArrayLike, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t [s], and the residual (n,) [m], as
         `Sea.height_at`; `at` also gives the motion. Raises ValueError as `at`."""
-        found = self.at(points, t)
-        return found.height, found.residual
+        surface = self.at(points, t)
+        return surface.height, surface.residual
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t [s].
@@ -265,8 +265,8 @@ def check_carried(waves: Waves, column: FluidColumn) -> None:
         allowed = f"those under the column's gravity of {column.gravity:g} m/s2"
         raise argument_error("waves", f"waves on {waves.water}", allowed)
     if len(waves.kx) and not math.isinf(waves.water.depth):
-        given = f"waves of water {waves.water.depth:.6g} m deep, on a column inf m deep"
-        raise argument_error("waves", given, "those of deep water")
+        description = f"waves of water {waves.water.depth:.6g} m deep, on a column inf m deep"
+        raise argument_error("waves", description, "those of deep water")
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
@@ -286,10 +286,14 @@ def interface_of(waves: Waves, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarra
     ratio (waves,): interface over surface.
     """
     missed = 0.5 * waves.k * np.square(waves.amplitude)
-    found = np.zeros((1, 2 * RESPONSES, len(ratio)))
-    found[0, 0], found[0, RESPONSES + 1], found[0, RESPONSES + 2] = ratio, ratio * waves.kx, ratio * waves.ky
-    found[0, RESPONSES + 3] = -ratio * waves.omega
-    return found, np.stack([missed, ratio * missed])
+    responses = np.zeros((1, 2 * RESPONSES, len(ratio)))
+    responses[0, 0], responses[0, RESPONSES + 1], responses[0, RESPONSES + 2] = (
+        ratio,
+        ratio * waves.kx,
+        ratio * waves.ky,
+    )
+    responses[0, RESPONSES + 3] = -ratio * waves.omega
+    return responses, np.stack([missed, ratio * missed])
 
 
 @kernel(noalias=True)

@@ -62,7 +62,7 @@ def wave_rows(
     choppiness: float, count: int,
 ) -> NDArray[np.void]:  # fmt: skip
     """Rows (count,) of WAVE of waves of amplitudes a (n,) [m], kx, ky [rad/m] and phases at the centre, then zeros."""
-    k, found = np.maximum(np.hypot(kx, ky), 1e-30), np.zeros(count, WAVE)
+    k, rows = np.maximum(np.hypot(kx, ky), 1e-30), np.zeros(count, WAVE)
     ex, ey = choppiness * kx / k, choppiness * ky / k
     values = {
         "kx": kx / (2.0 * math.pi), "ky": ky / (2.0 * math.pi), "phase": turns - np.rint(turns),
@@ -70,8 +70,8 @@ def wave_rows(
         "xx": -ex * kx * a, "yy": -ey * ky * a, "xy": -ex * ky * a,
     }  # fmt: skip
     for name, value in values.items():
-        found[name][: len(a)] = value
-    return found
+        rows[name][: len(a)] = value
+    return rows
 
 
 class Factors(NamedTuple):
@@ -145,11 +145,11 @@ def calm_waves(bands, waves, calm, sums):
                 path = min(max(u * ex + v * ey + half, zero), two * half)
                 if path == zero:
                     continue
-                kept = math.exp(-loss * path)
-                lost = scale * (one - kept)
+                transmission = math.exp(-loss * path)
+                lost = scale * (one - transmission)
                 cos, sin = single_cos_sin_turns(wave.kx * bands.x[i] + wave.ky * bands.y[i] + wave.phase)
                 cos, sin = cos * lost, sin * lost
-                sums.z[i] -= wave.z * cos + mean * (one - kept * kept)
+                sums.z[i] -= wave.z * cos + mean * (one - transmission * transmission)
                 sums.X[i] -= wave.X * sin
                 sums.Y[i] -= wave.Y * sin
                 sums.hx[i] -= wave.hx * sin

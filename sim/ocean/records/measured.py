@@ -143,15 +143,15 @@ def measured_spectrum(
     bad = ~(np.isfinite(S) & (S >= 0.0))
     if bad.any() or not S.any():
         raise argument_error("density", float(S[bad][0]) if bad.any() else 0.0, allowed)
-    found = Measured(f, S if theta is None else S[:, order], theta)
+    densities = Measured(f, S if theta is None else S[:, order], theta)
     return Spectrum(
         name,
         f"{name}: measured",
-        found.of_waves,
-        found.significant_height,
-        found.peak,
+        densities.of_waves,
+        densities.significant_height,
+        densities.peak,
         SpreadConditions if theta is None else Conditions,
-        found.of_frequency,
+        densities.of_frequency,
         by_wind=False,
     )
 

@@ -57,15 +57,17 @@ def recorded_waves(
     n, step = len(times), float(times[-1] - times[0]) / (len(times) - 1)
     if not step > 0.0 or np.abs(times - times[0] - step * np.arange(n)).max() > UNEVEN * step:
         gap = int(np.argmax(np.diff(times)))
-        given = f"times with a step of {float(np.median(np.diff(times))):.4g} s, and one of"
-        raise argument_error("t", f"{given} {times[gap + 1] - times[gap]:.4g} s after t = {times[gap]:g} s", allowed)
+        description = f"times with a step of {float(np.median(np.diff(times))):.4g} s, and one of"
+        raise argument_error(
+            "t", f"{description} {times[gap + 1] - times[gap]:.4g} s after t = {times[gap]:g} s", allowed
+        )
     if heights.shape != times.shape:
         raise argument_error("height", heights.shape, f"finite heights, one for each of {n} times")
     bad = ~np.isfinite(heights)
     if bad.any():
         i = int(bad.argmax())
-        given = f"{heights[i]:g} at t = {times[i]:g} s, {int(bad.sum())} such heights in all"
-        raise argument_error("height", given, "finite heights")
+        description = f"{heights[i]:g} at t = {times[i]:g} s, {int(bad.sum())} such heights in all"
+        raise argument_error("height", description, "finite heights")
     direction, error = check_angle("direction", direction), check_number("error", error, "", 0.0, 0.5)
     x, y = check_vector("place", place, "m", 2)
     check_kind("water", water, FluidColumn | Conditions, "a FluidColumn or Conditions")
@@ -80,18 +82,18 @@ def recorded_waves(
     order = np.argsort(-energy, kind="stable")
     left = energy.sum() - np.cumsum(energy[order])  # with 1, 2, ... waves
     count = int(np.searchsorted(-left, -16.0 * error**2 * energy.sum())) + 1
-    kept = np.sort(order[:count])
-    if count > MAX_WAVES or f[kept[-1]] > HIGHEST:
-        given = f"a record of {count} waves up to {f[kept[-1]]:.3g} Hz"
+    strongest = np.sort(order[:count])
+    if count > MAX_WAVES or f[strongest[-1]] > HIGHEST:
+        description = f"a record of {count} waves up to {f[strongest[-1]]:.3g} Hz"
         raise argument_error(
-            "height", given, f"at most {MAX_WAVES} up to {HIGHEST:g} Hz: a shorter record, or more error"
+            "height", description, f"at most {MAX_WAVES} up to {HIGHEST:g} Hz: a shorter record, or more error"
         )
-    omega = 2.0 * math.pi * f[kept]
+    omega = 2.0 * math.pi * f[strongest]
     k = wavenumber(omega, water)
     kx, ky = k * math.cos(direction), k * math.sin(direction)
-    phase = within_half_turn(omega * times[0] - np.angle(X[kept]) - kx * x - ky * y)
+    phase = within_half_turn(omega * times[0] - np.angle(X[strongest]) - kx * x - ky * y)
     own = water.water if isinstance(water, Conditions) else Water(math.inf, water.gravity, water.surface.density)
-    return Waves(kx, ky, amplitude[kept], phase, omega, own)
+    return Waves(kx, ky, amplitude[strongest], phase, omega, own)
 
 
 def wavenumber(omega: np.ndarray, water: FluidColumn | Conditions) -> np.ndarray:

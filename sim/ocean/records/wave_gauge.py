@@ -73,8 +73,8 @@ class WaveGauge:
         energy, _ = np.histogram(sea.frequencies / (2.0 * math.pi), edges, weights=scale**2 * sea.energy_at(t))
         theory = energy / f[1]
         # Up to where 99 % of the energy is: the rest is an empty chart.
-        shown = max(8, int(np.searchsorted(np.cumsum(energy), ENERGY_SHOWN * energy.sum())) + 2)
-        return f[1:shown], measured[1:shown], theory[1:shown]
+        count = max(8, int(np.searchsorted(np.cumsum(energy), ENERGY_SHOWN * energy.sum())) + 2)
+        return f[1:count], measured[1:count], theory[1:count]
 
 
 def where_hit(

@@ -17,22 +17,22 @@ __all__ = ["PARAMETERS", "SPECTRA", "Conditions", "Spectrum"]
 
 
 def _discover() -> dict[str, Spectrum[Any]]:
-    found: dict[str, Spectrum[Any]] = {}
+    spectra: dict[str, Spectrum[Any]] = {}
     for module in pkgutil.iter_modules(__path__):
         spectrum = getattr(importlib.import_module(f"{__name__}.{module.name}"), "SPECTRUM", None)
         if isinstance(spectrum, Spectrum):
-            found[spectrum.name] = spectrum
-    return found
+            spectra[spectrum.name] = spectrum
+    return spectra
 
 
 def _declared() -> dict[str, Parameter]:
     """Raises ValueError if two spectra declare one name differently."""
-    found: dict[str, Parameter] = {}
+    parameters: dict[str, Parameter] = {}
     for spectrum in SPECTRA.values():
         for name, declared in parameters_of(spectrum.conditions).items():
-            if found.setdefault(name, declared) != declared:
+            if parameters.setdefault(name, declared) != declared:
                 raise ValueError(f"{name}: declared differently by {spectrum.name} and by another spectrum")
-    return found
+    return parameters
 
 
 SPECTRA.update(_discover())

@@ -55,18 +55,18 @@ def moments_of(
     The last decades of an endless spectrum show whether a moment converges.
     """
     omega = np.geomspace(first, last, POINTS)
-    S, found = density(omega), []
+    S, moments = density(omega), []
     weights = np.full(POINTS, math.log(last / first) / (POINTS - 1))
     weights[[0, -1]] *= 0.5
     for n in range(5):
         parts = weights * omega ** (n + 1) * S
         total = float(parts.sum())
         grows = math.isinf(cut_off) and float(parts[-POINTS // 10 :].sum()) > TAIL * total
-        found.append(math.inf if grows else total)
+        moments.append(math.inf if grows else total)
     peak = math.nan
     if S.any():
         i = min(max(int(S.argmax()), 1), POINTS - 2)
         near = np.linspace(omega[i - 1], omega[i + 1], PEAK_POINTS)
         peak = 2.0 * math.pi / float(near[density(near).argmax()])
-    m0, m1, m2, m3, m4 = found
+    m0, m1, m2, m3, m4 = moments
     return Moments(m0, m1, m2, m3, m4, peak, gravity, cut_off)

@@ -225,10 +225,10 @@ class Spectrum(NamedTuple, Generic[C]):
 
     def _of_waves(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
         """The same for wavenumbers (n,) that are not 0."""
-        found = np.zeros(kx.shape) if self.is_level(conditions) else self.density(kx, ky, conditions)
+        S = np.zeros(kx.shape) if self.is_level(conditions) else self.density(kx, ky, conditions)
         if conditions.second_height > 0.0:
-            found = found + second_system(kx, ky, conditions)
-        return found * np.exp(-(kx**2 + ky**2) * conditions.low_pass**2)
+            S = S + second_system(kx, ky, conditions)
+        return S * np.exp(-(kx**2 + ky**2) * conditions.low_pass**2)
 
     def moments(self, conditions: C | None = None, cut_off: float = math.inf, **values: Any) -> Moments:
         """The moments m0 to m4 of `frequency_density`, with Tp, Tz, Tm01 and the steepness.
@@ -249,12 +249,12 @@ class Spectrum(NamedTuple, Generic[C]):
         # waves that feel the bottom fall more slowly: the tail that decides begins where they no longer do
         last = min(cut_off, max(*own, math.sqrt(c.gravity / c.depth)) * OMEGA_RANGE[1])
         first = min(min(own) * OMEGA_RANGE[0], 0.5 * last)
-        found = moments_of(lambda omega: self.frequency_density(omega, c), first, last, c.gravity, cut_off)
+        moments = moments_of(lambda omega: self.frequency_density(omega, c), first, last, c.gravity, cut_off)
         if self.line is None or typical > cut_off:
-            return found
+            return moments
         m0 = self.line(c)[2]
-        together = {f"m{n}": found[n] + m0 * typical**n for n in range(5)}
-        return found._replace(peak_period=2.0 * math.pi / typical if m0 > 0.0 else found.peak_period, **together)
+        together = {f"m{n}": moments[n] + m0 * typical**n for n in range(5)}
+        return moments._replace(peak_period=2.0 * math.pi / typical if m0 > 0.0 else moments.peak_period, **together)
 
 
 SpreadC = TypeVar("SpreadC", bound=SpreadConditions)

@@ -43,12 +43,12 @@ def read_spectrum(
     where the format needs them.
     """
     when = None if time is None else read_time(time)
-    found = contents(path, place, missing)
-    if isinstance(found, SpectrumSeries):
-        return found.nearest(when)
+    content = contents(path, place, missing)
+    if isinstance(content, SpectrumSeries):
+        return content.nearest(when)
     if when is not None:
         raise argument_error("time", time, "a time for a file with records of several times; this is a table of one")
-    return found
+    return content
 
 
 def read_spectra(
@@ -60,10 +60,10 @@ def read_spectra(
 
     Arguments and errors as of `read_spectrum`; raises ValueError for a file without times, too.
     """
-    found = contents(path, place, missing)
-    if not isinstance(found, SpectrumSeries):
+    content = contents(path, place, missing)
+    if not isinstance(content, SpectrumSeries):
         raise argument_error("path", str(path), "a file with times; this has one spectrum, which `read_spectrum` reads")
-    return found
+    return content
 
 
 def contents(

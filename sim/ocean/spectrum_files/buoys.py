@@ -67,8 +67,8 @@ def spectrum_of(path: Path, density: Records, moments: Mapping[str, Records], i:
     time, there = density.time[i], np.isfinite(density.values[i])
     order = np.argsort(density.frequency[there])
     f, S = density.frequency[there][order], density.values[i][there][order]
-    found = {kind: moment_at(records, time, f) for kind, records in moments.items()}
-    known = {kind: values for kind, values in found.items() if values is not None}
+    by_kind = {kind: moment_at(records, time, f) for kind, records in moments.items()}
+    known = {kind: values for kind, values in by_kind.items() if values is not None}
     if not {"alpha1", "r1"} <= known.keys():
         needed = "no directions: they need the files of alpha1 and of r1 at the same time"
         return made(path, time, f, S, notes=[needed] if known else [])
@@ -83,9 +83,9 @@ def spectrum_of(path: Path, density: Records, moments: Mapping[str, Records], i:
 def kind_of(text: str, path: Path, records: Records) -> str:
     """The quantity in a buoy's file: by its first line, by the letter in its name, or by its values."""
     head = text.partition("\n")[0].lower()
-    found = re.search(r"\b(alpha[12]|r[12])_1\b", head)
-    if found is not None:
-        return found.group(1)
+    match = re.search(r"\b(alpha[12]|r[12])_1\b", head)
+    if match is not None:
+        return match.group(1)
     history = HISTORY_NAME.match(path.name)
     if history is not None and history[2] in HISTORY:
         return HISTORY[history[2]]
@@ -105,11 +105,11 @@ def file_of_densities(path: Path) -> str:
 
 def files_beside(path: Path) -> dict[str, Path]:
     """The files of directions that belong to one of densities, by their quantity."""
-    found = {kind: path.with_suffix(ending) for ending, kind in REALTIME.items()}
+    candidates = {kind: path.with_suffix(ending) for ending, kind in REALTIME.items()}
     history = HISTORY_NAME.match(path.name)
     if history is not None:
-        found = {kind: path.with_name(history[1] + letter + history[3]) for letter, kind in HISTORY.items()}
-    return {kind: other for kind, other in found.items() if other.is_file() and other != path}
+        candidates = {kind: path.with_name(history[1] + letter + history[3]) for letter, kind in HISTORY.items()}
+    return {kind: other for kind, other in candidates.items() if other.is_file() and other != path}
 
 
 def moments_of(path: Path, kind: str) -> Records:
@@ -161,10 +161,10 @@ def records_of(text: str, path: Path) -> Records:
             frequency = places if frequency is None else frequency
             if len(places) != len(frequency) or not np.array_equal(places, frequency):
                 raise line_error(path, number, "the frequencies of the first row")
-        found = floats(values, path, number)
-        if frequency is None or len(found) != len(frequency):
-            raise line_error(path, number, f"{0 if frequency is None else len(frequency)} values, not {len(found)}")
-        rows.append(found)
+        numbers = floats(values, path, number)
+        if frequency is None or len(numbers) != len(frequency):
+            raise line_error(path, number, f"{0 if frequency is None else len(frequency)} values, not {len(numbers)}")
+        rows.append(numbers)
     if not rows or frequency is None:
         raise argument_error("path", str(path), "a file with at least one record")
     values = np.array(rows)
@@ -206,23 +206,23 @@ def floats(words: list[str], path: Path, number: int, missing: Collection[float]
 
     missing: numbers that NDBC writes for a missing value of this kind.
     """
-    found, wrong = values_of(words, missing)
+    numbers, wrong = values_of(words, missing)
     if wrong is not None:
         raise line_error(path, number, "numbers")
-    return found
+    return numbers
 
 
 def without_99(values: np.ndarray) -> np.ndarray:
     """Densities (n, m), nan in place of a 99, NDBC's other sign of a missing one, that those beside it are not near."""
-    found = values.copy()
+    densities = values.copy()
     for row, column in np.argwhere(values == 99.0):
         line = values[row]
         whole = np.flatnonzero(np.isfinite(line) & (line != 99.0))
         at = int(np.searchsorted(whole, column))
         beside = line[whole[max(at - 1, 0) : at + 1]]
         if not len(beside) or (beside * NEAR < 99.0).any() or (beside > NEAR * 99.0).any():
-            found[row, column] = math.nan
-    return found
+            densities[row, column] = math.nan
+    return densities
 
 
 def from_summary(text: str, path: Path) -> SpectrumSeries:
@@ -241,11 +241,11 @@ def from_summary(text: str, path: Path) -> SpectrumSeries:
             raise line_error(path, number, f"{len(head)} columns, not {len(words)}")
         row = dict(zip(head, words, strict=True))
         try:
-            found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
+            row_systems = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
             raise line_error(path, 1, f"the columns of {kind}; {missing} is not here") from None
         times.append(clock_time(words[:clock], path, number))
-        rows.append([system for system in found if system is not None])
+        rows.append([system for system in row_systems if system is not None])
     if not any(rows):
         raise argument_error("path", str(path), f"{kind} with a record of waves")
     return SpectrumSeries(

@@ -22,10 +22,10 @@ MAGNETIC = "directions are those of the instrument's compass: from magnetic nort
 def read_time(text: str) -> datetime.datetime:
     """A date and time in UTC. Raises ValueError for another text."""
     try:
-        found = datetime.datetime.fromisoformat(str(text).strip())
+        time = datetime.datetime.fromisoformat(str(text).strip())
     except ValueError:
         raise argument_error("time", text, "a time such as 2020-01-02 05:00") from None
-    return found.replace(tzinfo=None) if found.tzinfo is None else found.astimezone(datetime.UTC).replace(tzinfo=None)
+    return time.replace(tzinfo=None) if time.tzinfo is None else time.astimezone(datetime.UTC).replace(tzinfo=None)
 
 
 def titled(path: Path, time: datetime.datetime | None) -> str:
@@ -38,17 +38,17 @@ def towards(degrees: np.ndarray) -> np.ndarray:
     return np.radians(270.0 - np.asarray(degrees))
 
 
-def made(path: Path, time: datetime.datetime | None, *given: Any, notes: Sequence[str] = ()) -> Spectrum[Any]:
+def made(path: Path, time: datetime.datetime | None, *arrays: Any, notes: Sequence[str] = ()) -> Spectrum[Any]:
     """`measured_spectrum` of these arrays; notes: a line on each thing that was left out, or assumed.
 
     Raises ValueError that names the file.
     """
     try:
-        found = measured_spectrum(*given, name=titled(path, time))
+        spectrum = measured_spectrum(*arrays, name=titled(path, time))
     except ValueError as error:
         raise ValueError(f"path: {path}: {error}") from None
-    total = np.asarray(given[1]) if len(given) == 2 else np.asarray(given[1]).sum(axis=1)
-    return found._replace(notes=(*summary_of(found), *spike_of(np.asarray(given[0]), total), *notes))
+    total = np.asarray(arrays[1]) if len(arrays) == 2 else np.asarray(arrays[1]).sum(axis=1)
+    return spectrum._replace(notes=(*summary_of(spectrum), *spike_of(np.asarray(arrays[0]), total), *notes))
 
 
 def filled(frequency: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:

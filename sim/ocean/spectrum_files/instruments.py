@@ -48,8 +48,8 @@ def from_datawell(text: str, path: Path) -> Spectrum[Any]:
     table = read_columns([Row(DATAWELL_HEAD, DATAWELL_COLUMNS), *rows], [], path, MEANINGS, ("frequency", "density"))
     density = table.columns["density"]
     table.columns["density"] = density._replace(values=density.values * largest)
-    found = DATAWELL_TIME.search(path.name)
-    time = datetime.datetime.fromisoformat(f"{found[1]} {found[2]}:{found[3]}") if found else None
+    match = DATAWELL_TIME.search(path.name)
+    time = datetime.datetime.fromisoformat(f"{match[1]} {match[2]}:{match[3]}") if match else None
     return from_columns(table._replace(notes=(MAGNETIC,)), path, time)
 
 
@@ -99,11 +99,11 @@ def spectrum_of(
 
 def awac_line(words: list[str], path: Path, number: int) -> tuple[datetime.datetime, np.ndarray, np.ndarray]:
     """Time, frequencies (n,) [Hz] and values (n,) of MMDDYY, hhmmss, kind, start, step, n, values."""
-    found = [number_of(word.strip()) for word in words[3:]]
+    row = [number_of(word.strip()) for word in words[3:]]
     try:
         time = datetime.datetime.strptime(words[0] + words[1].partition(".")[0], "%m%d%y%H%M%S")
-        start, step, count, *values = found
-        if None in found or count != len(values) or not step:  # pyright: ignore
+        start, step, count, *values = row
+        if None in row or count != len(values) or not step:  # pyright: ignore
             raise ValueError
     except (ValueError, IndexError):
         raise line_error(path, number, "date, time, kind, first frequency, step, number and as many values") from None

@@ -57,17 +57,17 @@ class Lines:
 
     def numbers(self, count: int) -> list[float]:
         """The first numbers of the next line. Raises ValueError that names it."""
-        found = [number_of(word) for word in self.next()[:count]]
-        if len(found) < count or any(one is None or math.isinf(one) for one in found):
+        numbers = [number_of(word) for word in self.next()[:count]]
+        if len(numbers) < count or any(one is None or math.isinf(one) for one in numbers):
             raise self.error(f"{count} numbers")
-        return [one for one in found if one is not None]
+        return [one for one in numbers if one is not None]
 
     def count(self) -> int:
         """The whole number of the next line."""
-        found = self.numbers(1)[0]
-        if found != int(found) or not 1 <= found <= MAX_COUNT:
+        number = self.numbers(1)[0]
+        if number != int(number) or not 1 <= number <= MAX_COUNT:
             raise self.error(f"a whole number from 1 to {MAX_COUNT}")
-        return int(found)
+        return int(number)
 
 
 class SwanHead(NamedTuple):

@@ -124,8 +124,8 @@ def opened(wavespectra: Any, path: Path, reader: str) -> Any:
     more = {"filetype": "json" if path.suffix.lower() == ".json" else "csv"} if reader == "read_spotter" else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = getattr(wavespectra, reader)(str(path), **more)["efth"].load()
-    return found.sortby("freq")
+        densities = getattr(wavespectra, reader)(str(path), **more)["efth"].load()
+    return densities.sortby("freq")
 
 
 def of_ndbc(file: Any) -> Any:

@@ -231,12 +231,12 @@ def _peak_period(omega: np.ndarray, energy: np.ndarray, all_bins: _Bins | None =
     all_bins: those of all waves that run, if known; they are used where none of these waves is without
     energy.
     """
-    found = all_bins if all_bins is not None and (energy[all_bins.waves] > 0.0).all() else None
-    if found is None:
-        found = _bins(omega, (energy > 0.0) & (omega > 0.0))
-    if found is None:
+    bins = all_bins if all_bins is not None and (energy[all_bins.waves] > 0.0).all() else None
+    if bins is None:
+        bins = _bins(omega, (energy > 0.0) & (omega > 0.0))
+    if bins is None:
         return math.nan
-    waves, number, edges = found
+    waves, number, edges = bins
     held = np.bincount(number, energy[waves], len(edges) - 1)
     density = held / np.diff(edges)
     weight = (density / density.max()) ** 4 * np.diff(edges)

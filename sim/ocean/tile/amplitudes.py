@@ -41,7 +41,7 @@ def resolved(size: int) -> np.ndarray:
 def unit_amplitudes(size: int, seed: int, kind: str) -> np.ndarray:
     """(xi1 + i xi2)/2 of each wavenumber, complex (size, size); |.|^2 is 1/2 on average, or exactly for "fixed"."""
     n, there = integers(size), resolved(size)
-    found = np.empty((size, size), complex)
+    plane = np.empty((size, size), complex)
     with np.errstate(over="ignore"):
         key = _mixed(np.uint64(seed % 2**64) + _STEP)
     for rows in pieces(size, max(1, PIECE // size)):
@@ -51,8 +51,8 @@ def unit_amplitudes(size: int, seed: int, kind: str) -> np.ndarray:
             first, second = _uniform(_mixed(cell + _STEP)), _uniform(_mixed(cell + _STEP + _STEP))
         # Box-Muller; "fixed" keeps the phase and replaces the radius by its root mean square.
         radius = np.sqrt(-2.0 * np.log(first)) if kind == "random" else np.sqrt(2.0)
-        found[rows] = np.where(there[rows], 0.5 * radius * np.exp(2j * np.pi * second), 0.0)
-    return found
+        plane[rows] = np.where(there[rows], 0.5 * radius * np.exp(2j * np.pi * second), 0.0)
+    return plane
 
 
 def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

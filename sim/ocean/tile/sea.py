@@ -94,7 +94,7 @@ class Sea(TileSurface, AnySea):
         self._wavenumbers = Wavenumbers(self.size, self.length, precision)
         self.k = self._wavenumbers.k  # [rad/m], FFT order
         self._slopes: SlopeSpectrum | None = None  # of the last call of `slope_left`
-        given = {
+        conditions = {
             "wind_speed": wind_speed,
             "wind_direction": wind_direction,
             "gravity": gravity,
@@ -103,7 +103,7 @@ class Sea(TileSurface, AnySea):
             "viscosity": viscosity,
         }
         self._given: dict[str, Any] = {}  # conditions as given, those that the spectrum uses
-        drawn = self._draw(spectrum, given | more, Medium(), unit_amplitudes(self.size, self.seed, amplitudes))
+        drawn = self._draw(spectrum, conditions | more, Medium(), unit_amplitudes(self.size, self.seed, amplitudes))
         self._waves = TileWaves(self._wavenumbers, drawn)
         self.transforms = Transforms(self.size, precision)
         self._heights = TileHeights(self._waves, self.transforms)
@@ -291,8 +291,8 @@ class Sea(TileSurface, AnySea):
 
         unit: amplitudes over their size, a full plane.
         """
-        chosen, given = checked_conditions(spectrum, values, self._given)
-        conditions = chosen.conditions(**given)
+        chosen, arguments = checked_conditions(spectrum, values, self._given)
+        conditions = chosen.conditions(**arguments)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
         omega, decay = medium.roots(self._wavenumbers.quarter, conditions)
         raise_if_stopped()
@@ -302,14 +302,14 @@ class Sea(TileSurface, AnySea):
             unit = with_line(S, unit, chosen.line(conditions), dk)
         target = np.sqrt(S) * dk
         raise_if_stopped()
-        self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, given
+        self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, arguments
         return DrawnWaves(unit, target, omega, decay, conditions.depth)
 
 
 def checked_conditions(
-    spectrum: str | Spectrum[Any], values: dict[str, Any], given: dict[str, Any]
+    spectrum: str | Spectrum[Any], values: dict[str, Any], earlier_values: dict[str, Any]
 ) -> tuple[Spectrum[Any], dict[str, Any]]:
-    """A spectrum, and those of the conditions `given` before and now in `values` that it uses.
+    """A spectrum, and those of the conditions in `earlier_values` and now in `values` that it uses.
 
     Raises ValueError for an unknown spectrum or a condition that it does not use, TypeError for an unknown name.
     """
@@ -321,4 +321,4 @@ def checked_conditions(
             raise TypeError(f"{name}: no such condition; {known}")
     new = {n: v for n, v in values.items() if n in _CONDITIONS}
     spectrum.check_used(new)
-    return spectrum, {n: v for n, v in (given | new).items() if spectrum.uses(n)}
+    return spectrum, {n: v for n, v in (earlier_values | new).items() if spectrum.uses(n)}

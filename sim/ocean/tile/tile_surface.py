@@ -65,10 +65,10 @@ class TileSurface:
         where, surface, cell = check_positions("points", points), self.surface(t), self.length / self.size
         height, residual, label = query(surface, where)
         fields = (*(f[..., i] for f in (surface.flow, surface.slope) for i in range(2)), surface.rise, surface.lift)
-        found = np.empty((6, len(where)))
-        for field, row in zip(fields, found, strict=True):
+        samples = np.empty((6, len(where)))
+        for field, row in zip(fields, samples, strict=True):
             sample(label, np.ascontiguousarray(field), cell, row)
-        u, v, hx, hy, w, acceleration = found
+        u, v, hx, hy, w, acceleration = samples
         slope, velocity = np.column_stack([hx, hy]), np.column_stack([u, v, w])
         if surface.choppiness > 0.0:
             turn_slopes(label, grid_fields(surface), slope)
@@ -92,8 +92,8 @@ def shares(k: np.ndarray, energy: np.ndarray, grid: RadialGrid) -> np.ndarray:
     order = np.argsort(k)
     below = np.concatenate([[0.0], np.cumsum(energy[order])])
     limit = 2.0 * math.pi / (0.5 * sum(FADE) * grid.spacing)
-    found = below[np.searchsorted(k[order], limit)]
-    bands = np.sqrt(found / max(float(below[-1]), 1e-30))
+    long_energy = below[np.searchsorted(k[order], limit)]
+    bands = np.sqrt(long_energy / max(float(below[-1]), 1e-30))
     return np.repeat(bands, np.diff(grid.start.astype(np.int64))).astype(np.float32)
 
 

@@ -42,7 +42,7 @@ class Wavenumbers:
 
     def folded_sum(self, plane: np.ndarray) -> np.ndarray:
         """The sum of a full plane over the waves of each |kx|, |ky|: a quarter plane."""
-        found = np.zeros_like(self.quarter)
+        sums = np.zeros_like(self.quarter)
         raise_if_stopped()
-        np.add.at(found, np.ix_(self.folded, self.folded), plane)
-        return found
+        np.add.at(sums, np.ix_(self.folded, self.folded), plane)
+        return sums

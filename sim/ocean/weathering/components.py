@@ -54,12 +54,12 @@ class PseudoComponents(NamedTuple):
 @cache
 def oil_records() -> dict[str, OilRecord]:
     """The records of all oils by name."""
-    found = {}
+    records = {}
     for row in oil_rows():
         if not row["record"]:
             continue
         cuts = [cut.split("@") for cut in row["distillation"].split()]
-        found[row["name"]] = OilRecord(
+        records[row["name"]] = OilRecord(
             record=row["record"],
             is_crude=row["kind"] == "crude",
             cold_density=float(row["density_0"]),
@@ -71,7 +71,7 @@ def oil_records() -> dict[str, OilRecord]:
             emulsion_water=float(row["emulsion_water"]),
             distillation=tuple((float(share) / 100.0, float(at) + CELSIUS) for share, at in cuts),
         )
-    return found
+    return records
 
 
 def check_oil(oil: object) -> str:

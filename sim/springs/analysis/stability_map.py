@@ -43,13 +43,13 @@ def map_row(
     """
     state = State.at_rest(net)
     state.x[:] = find_rest_positions(net)
-    found = np.array([outcome(method, net, float(h), state.x, max_steps) for h in steps])
+    outcomes = np.array([outcome(method, net, float(h), state.x, max_steps) for h in steps])
     measured = math.nan
     if locate:
         measured = located(
-            steps, found != STABLE, lambda h: outcome(method, net, h, state.x, LONGER * max_steps) != STABLE
+            steps, outcomes != STABLE, lambda h: outcome(method, net, h, state.x, LONGER * max_steps) != STABLE
         )
-    return MapRow(found, measured, critical_step(net, method, state), accurate_step(net, method, state))
+    return MapRow(outcomes, measured, critical_step(net, method, state), accurate_step(net, method, state))
 
 
 def located(steps: NDArray[np.float64], grows: NDArray[np.bool_], grows_at: Callable[[float], bool]) -> float:

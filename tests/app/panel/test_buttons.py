@@ -129,7 +129,7 @@ def test_every_button_of_every_tab_is_pressed(
     viewer = students_lab
     viewer.visitors = lambda: [1]  # type: ignore[method-assign]
     viewer.open(name)
-    wait_for(lambda: sum(kept.state is not None for kept in viewer.panel.recorder.kept()) > 1)
+    wait_for(lambda: sum(kept.state is not None for kept in viewer.panel.recorder.all_frames()) > 1)
     viewer.served.stop_threads()
     pressed = Pressed(viewer, monkeypatch)
     pressed.panel.share.name.value = "Mine"

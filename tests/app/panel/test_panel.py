@@ -58,7 +58,7 @@ def test_every_callback_runs_on_the_one_event_loop(request: pytest.FixtureReques
     """viser runs others in a pool of threads, where two changes of the parameters could lose each other."""
     viewer: Viewer = request.getfixturevalue(lab_of)
     viewer.open(name)
-    wait_for(lambda: viewer.served.shown > 0)
+    wait_for(lambda: viewer.served.shown_serial > 0)
     found = list(callbacks(viewer))
     assert len(found) > 20
     assert [callback for callback in found if not inspect.iscoroutinefunction(callback)] == []
@@ -242,13 +242,13 @@ def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutawa
     try:
         for name, (values, said, key) in SIMPLE.items():
             lab.open(name, check_record(scene_named(name).params, values))
-            wait_for(lambda: lab.served.shown > 2 and lab.panel.controls_tab.readings.readout.content != "")
+            wait_for(lambda: lab.served.shown_serial > 2 and lab.panel.controls_tab.readings.readout.content != "")
             text = lab.panel.controls_tab.readings.readout.content
             assert (said in text) == plain, name
             assert (key in text) != plain, name
         lab.open("radial_sea", RadialSeaParams(cutaway=True, particles=100, wave_count=16))
         line = lab.panel.controls["cutaway"]
-        wait_for(lambda: lab.served.shown > 2 and (line.text != "") == plain)
+        wait_for(lambda: lab.served.shown_serial > 2 and (line.text != "") == plain)
         assert ("no cutaway" in line.text) == plain
         assert (lab.view.walls is None) == plain
     finally:

@@ -36,7 +36,7 @@ def recorded() -> Any:
         wall += 1 / 30 + 1e-6
         recorder.note(loop.latest, wall)
         rows += [row for _, row in loop.run.snapshots.pop_rows()]
-    return kind, recorder.kept(), Plotted(rows, {})
+    return kind, recorder.all_frames(), Plotted(rows, {})
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_the_page_of_a_race_has_its_charts() -> None:
     for i in range(30):
         loop.tick(1 / 30)
         recorder.note(loop.latest, i / 30 + 1e-6)
-    page = replay_html(kind, recorder.kept(), Plotted((), loop.latest.curves or {}))  # type: ignore[arg-type]
+    page = replay_html(kind, recorder.all_frames(), Plotted((), loop.latest.curves or {}))  # type: ignore[arg-type]
     about = page[page.index("springtide-about") :]
     assert about.count("<svg") == len(kind.curves) == 2
     assert "Distance from the reference" in about

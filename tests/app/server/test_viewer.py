@@ -31,7 +31,7 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
     lab.commands.put(StepOnce())
     wait_for(lambda: lab.loop.run.halted)
     assert lab.loop.run.halted == "The picture could not be drawn, ValueError: no such colour"
-    wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
+    wait_for(lambda: lab.served.shown_serial == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.served.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
 
@@ -53,7 +53,7 @@ def test_an_error_anywhere_on_the_viewer_s_thread_halts_the_run_and_the_thread_l
     lab.commands.put(StepOnce())
     wait_for(lambda: lab.loop.run.halted)
     assert lab.loop.run.halted.endswith(", MemoryError: no room for a frame")
-    wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
+    wait_for(lambda: lab.served.shown_serial == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.served.threads)
 
 
@@ -151,7 +151,7 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     assert "no room for a cloth" in panel_text(lab)
     monkeypatch.undo()
     lab.want("rope")
-    wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.served.shown > 0)
+    wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.served.shown_serial > 0)
 
 
 @pytest.fixture

@@ -64,7 +64,7 @@ def try_lab(name):
 
     counted = coroutines.run(visit())
     moves = viewer.loop.latest.status.time > 0.1
-    replay = len(replay_html(viewer.panel.kind, viewer.panel.recorder.kept(), viewer.panel.plots.plotted()))
+    replay = len(replay_html(viewer.panel.kind, viewer.panel.recorder.all_frames(), viewer.panel.plots.plotted()))
     viewer.shut()
     return counted, moves, replay > 10_000, len(inside.LOST)
 

@@ -72,7 +72,7 @@ def test_a_camera_that_was_moved_to_show_a_divergence_goes_back_unless_a_person_
             for browser in (first, second):
                 camera(browser).position = PLACE
             scene.advance = diverge
-            await until(lambda: lab.loop.run.halted and lab.served.shown == lab.loop.latest.serial)
+            await until(lambda: lab.loop.run.halted and lab.served.shown_serial == lab.loop.latest.serial)
             assert not np.allclose(place(first), PLACE)
             camera(second).position = (4.0, 4.0, 4.0)
             scene.advance = advance

@@ -311,7 +311,9 @@ def settled(visit: Visit, time: float = 1.5) -> None:
     visit.viewer.loop.commands.put(Pause())
     visit.set("speed", 0.2)
     visit.until(lambda: not visit.viewer.loop.run.running, "it does not pause")
-    visit.until(lambda: visit.viewer.served.shown == visit.viewer.loop.latest.serial, "the last picture is not shown")
+    visit.until(
+        lambda: visit.viewer.served.shown_serial == visit.viewer.loop.latest.serial, "the last picture is not shown"
+    )
 
 
 def test_a_point_of_the_rope_is_marked_and_pulled(visit: Visit) -> None:
@@ -660,7 +662,7 @@ def test_a_replay_plays_from_a_file(visit: Visit, tmp_path: Path) -> None:
     visit.until(lambda: len(visit.viewer.panel.recorder.frames) > 30, "nothing is recorded")
     recorder, plots = visit.viewer.panel.recorder, visit.viewer.panel.plots
     path = tmp_path / "replay.html"
-    path.write_text(replay_html(scene_named("rope"), recorder.kept(), plots.plotted()), "utf-8")
+    path.write_text(replay_html(scene_named("rope"), recorder.all_frames(), plots.plotted()), "utf-8")
     visit.page.open(path.as_uri())
     visit.page.wait(f"window.vertex ??= {LAST_VERTEX}; return window.vertex !== undefined;")
     visit.page.wait(f"return {LAST_VERTEX} !== window.vertex;")

@@ -150,7 +150,7 @@ def over_of(lab: Viewer, tab: Tab, task: Task, verdicts: int) -> tuple[float, ..
     assert lab.panel.guide is not None
     if tab.page.locator(".springtide-verdict").count() != verdicts:
         return ()
-    rows = tab.page.evaluate(ROWS) if lab.panel.guide.shown is task else None
+    rows = tab.page.evaluate(ROWS) if lab.panel.guide.shown_task is task else None
     return (rows["over"],) if rows and names_of(lab, task) <= set(rows["names"]) else ()
 
 

@@ -60,11 +60,11 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     x, y = place_of(tab, back)
     tab.drag((line["right"] - THUMB / 2, y), (x, y), 10)
     tab.release()
-    tab.wait(lambda: recorder.shown is not None and abs(recorder.shown.time - back) < 1.5, 20)
+    tab.wait(lambda: recorder.shown_frame is not None and abs(recorder.shown_frame.time - back) < 1.5, 20)
     tab.wait(lambda: not lab.loop.run.running, 10)
     assert tab.page.locator("#springtide-time output").is_visible()
     tab.page.get_by_role("button", name="Continue from here").click()
-    tab.wait(lambda: lab.loop.run.running and recorder.shown is None, 20)
+    tab.wait(lambda: lab.loop.run.running and recorder.shown_frame is None, 20)
     assert lab.loop.run.identity.number == number + 1
     assert lab.loop.scene.time < high - 10.0
     tab.wait(lambda: recorder.span()[1] < high - 10.0, 10)
@@ -161,7 +161,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
         other.page.keyboard.press(key)
         other.page.wait_for_timeout(100)
     other.wait(lambda: recorder.position == len(recorder.frames) - 2 and not lab.loop.run.running, 20)
-    moment = recorder.shown
+    moment = recorder.shown_frame
     assert moment is not None
     words = f"t = {moment.time:.2f} s"
     for one in (tab, other):
@@ -179,7 +179,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
         other.page.keyboard.press("Space")
         other.wait(lambda playing=playing: recorder.playing is playing, 20)
     other.page.get_by_role("button", name="Live", exact=True).click()
-    tab.wait(lambda: recorder.shown is None and lab.loop.run.running, 20)
+    tab.wait(lambda: recorder.shown_frame is None and lab.loop.run.running, 20)
     tab.wait(lambda: tab.page.locator("#springtide-time").inner_text().endswith("Live"), 20)
 
 
@@ -190,7 +190,7 @@ def test_the_plots_show_the_moment(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(lambda: lab.loop.scene.time > lab.panel.recorder.span()[0] + 2.0, 60)
     lab.panel.recorder.show_time(lab.panel.recorder.span()[0] + 1.0)
     lab.loop.commands.put(Pause())
-    shown_frame = tab.wait(lambda: lab.panel.recorder.shown, 20)
+    shown_frame = tab.wait(lambda: lab.panel.recorder.shown_frame, 20)
     assert tab.wait(lambda: tab.page.evaluate(MOMENT_PLACES), 30)[0] == pytest.approx(shown_frame.time, abs=0.05)
     lab.panel.recorder.show_present()
     tab.wait(lambda: not tab.page.evaluate(MOMENT_PLACES), 20)

@@ -93,7 +93,7 @@ def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Ta
     lab.settings.load("Trampoline")
     tab.wait(lambda: lab.loop.latest.frame.sphere is not None and lab.scene.time > 0.3)
     lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.run.running and lab.served.shown == lab.loop.latest.serial)
+    tab.wait(lambda: not lab.loop.run.running and lab.served.shown_serial == lab.loop.latest.serial)
     *centre, radius = lab.loop.latest.frame.sphere
 
     def drawn() -> bool:

@@ -86,7 +86,7 @@ def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> 
     hanging: Future[float] = Future()
     lab.loop.commands.put(Advance(HANGING, hanging))
     node = "/race/rope_1" if scene == "race" else f"/{scene}"
-    tab.wait(lambda: hanging.done() and lab.served.shown == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
+    tab.wait(lambda: hanging.done() and lab.served.shown_serial == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
     tab.page.wait_for_timeout(500)
     ring = tab.page.locator("#springtide-ring")
 

@@ -149,7 +149,7 @@ def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], o
     lab, first = shown
     first.wait(lambda: lab.scene.time > 1)
     lab.loop.commands.put(Pause())
-    first.wait(lambda: not lab.loop.run.running and lab.served.shown == lab.loop.latest.serial)
+    first.wait(lambda: not lab.loop.run.running and lab.served.shown_serial == lab.loop.latest.serial)
     second = open_tab(lab.port)
     second.wait(lambda: len(second.vertices("/rope")) > 0)
     # A slow page may still have frames to draw from before the pause.

@@ -124,7 +124,7 @@ def test_the_page_says_what_is_opened_and_not_that_it_connects(
     try:
         lab.open("rope")
         tab = open_tab(lab.port)
-        tab.wait(lambda: lab.served.shown > 5 and tab.page.locator(".springtide-panel").count())
+        tab.wait(lambda: lab.served.shown_serial > 5 and tab.page.locator(".springtide-panel").count())
         tab.page.evaluate(COVERS)
         is_said, make_scene = threading.Event(), lab.make_scene
 
@@ -139,7 +139,7 @@ def test_the_page_says_what_is_opened_and_not_that_it_connects(
             lab.want(name, check_record(kind.params, SMALL.get(name, {})))
             tab.wait(lambda kind=kind: f"Opening {kind.title} …" in tab.page.evaluate("covers"))
             is_said.set()
-            tab.wait(lambda name=name: lab.is_open and lab.panel.kind.name == name and lab.served.shown > 5)
+            tab.wait(lambda name=name: lab.is_open and lab.panel.kind.name == name and lab.served.shown_serial > 5)
             tab.wait(lambda: tab.page.locator(".springtide-panel").count())
             tab.page.wait_for_timeout(500)
         assert not any("Connecting" in words for words in tab.page.evaluate("covers"))

@@ -44,7 +44,7 @@ def test_200_scene_changes_leave_nothing_behind(viewer: Viewer, tally: Tally) ->
     def change(count: int) -> None:
         for number in range(count):
             viewer.open(NAMES[number % len(NAMES)])
-            until(lambda: viewer.served.shown > 0, "it is shown")
+            until(lambda: viewer.served.shown_serial > 0, "it is shown")
 
     with clients_of(viewer.port) as clients, tally.fault("scene changed", FIRST + CHANGES):
         clients.join()

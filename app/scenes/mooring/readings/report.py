@@ -45,11 +45,11 @@ def figures_of(snapshot: Snapshot) -> str:
     return fill("Largest tension: {} kN{}", bold(kilonewtons(most)), use)
 
 
-def slack_text(found: LineReading, now: float) -> Html:
+def slack_text(reading: LineReading, now: float) -> Html:
     """Time since a line went slack, or the fraction of time that it was slack."""
-    if math.isnan(found.slack_since):
-        return fill("{}", percent(found.slack_fraction) if found.slack_fraction > 0.0 else "never")
-    return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
+    if math.isnan(reading.slack_since):
+        return fill("{}", percent(reading.slack_fraction) if reading.slack_fraction > 0.0 else "never")
+    return coloured(f"since {seconds(now - reading.slack_since)}", ERROR_COLOUR)
 
 
 def expected_text(force: float) -> str:

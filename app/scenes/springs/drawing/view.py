@@ -66,14 +66,14 @@ class Sphere:
             "/sphere/ball", self.unit_ball, faces, color=SPHERE_COLOUR, visible=False
         )
         self.arrows, self.gap = Gizmo(server, post, "sphere", arrow_length, visible=False), gap
-        self.shown: tuple[float, float, float, float] | None = None
+        self.drawn_sphere: tuple[float, float, float, float] | None = None
 
     def show(self, sphere: tuple[float, float, float, float] | None, home: Vector | None) -> None:
         """Assign changes. sphere: x, y, z, radius [m]. home: where it is going to [m]; None without arrows."""
         self.ball.visible = sphere is not None
         self.arrows.show(home if sphere else None, self.gap + math.copysign(sphere[3] if sphere else 0.0, self.gap))
-        if sphere is not None and sphere != self.shown:
-            self.shown = sphere
+        if sphere is not None and sphere != self.drawn_sphere:
+            self.drawn_sphere = sphere
             set_arrays(self.ball, vertices=self.unit_ball * sphere[3] + sphere[:3])
 
 

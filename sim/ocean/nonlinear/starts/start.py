@@ -32,7 +32,7 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: flo
 
     Raises ValueError for a value that is not allowed or not that of the start.
     """
-    given = {name: value for name, value in water.items() if value is not None}
+    properties = {name: value for name, value in water.items() if value is not None}
     if isinstance(start, Sea):
         if start.medium != Medium() or start.conditions.tension != 0.0:
             raise argument_error("start", start, "a sea without tension, viscosity, film or a dispersion of its own")
@@ -43,12 +43,12 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: flo
     elif isinstance(start, Waves):
         waves, own = start, dataclasses.asdict(start.water)
     else:
-        return of_fields(start, size, length, given, time)
-    for name, value in {**given, "length": length}.items():
+        return of_fields(start, size, length, properties, time)
+    for name, value in {**properties, "length": length}.items():
         if name in own and value not in (own[name], (own[name],) * 2):
             raise argument_error(name, value, f"that of the waves it starts from, {own[name]:g}")
     own.pop("length", None)
-    conditions = Conditions(**(given | own))
+    conditions = Conditions(**(properties | own))
     modes = make_modes(checked_size(size), sides_of(length), conditions.water)
     return Start(modes, linear_start(waves, modes, time), conditions, time, True)
 

@@ -256,11 +256,11 @@ def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
 @kernel(inline=True)
 def weight_of(method, i):
     """Weight of stage i in the new velocity."""
-    found = 0.0
+    weight = 0.0
     for q in range(method.counts[method.stages]):
         if method.terms[method.stages, q] == np.uint64(i):
-            found += method.a[method.stages, q]
-    return found
+            weight += method.a[method.stages, q]
+    return weight
 
 
 @kernel(allocates=False)

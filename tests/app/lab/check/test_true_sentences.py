@@ -325,7 +325,7 @@ return oil_colour + once * once * (absorption - oil_colour)"""
 
 def test_the_less_likely_edits_are_tried_around_a_conditional_expression_too() -> None:
     tree = Tree(b"def one(a, b):\n    x = (a if a > b else b)\n    return 2 * x\n", "one", {}, ())
-    found = {(one.before, one.after) for candidate in more_slips(tree) for one in tree.words(candidate).shown}
+    found = {(one.before, one.after) for candidate in more_slips(tree) for one in tree.words(candidate).replacements}
     assert any("if a > b else b" in before and before != after for before, after in found)
 
 

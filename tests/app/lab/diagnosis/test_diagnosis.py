@@ -293,7 +293,7 @@ def test_two_wrong_terms_are_both_named() -> None:
     assert found is not None
     assert found.mistake == "the spring has the wrong sign"
     assert "The damping is 1/3 times what it must be" in found.text
-    assert [(line.name, [piece.wrong for piece in line.found], bool(line.right)) for line in found.equations] == [
+    assert [(line.name, [piece.wrong for piece in line.pieces], bool(line.right)) for line in found.equations] == [
         ("spring", [True], True), ("damping", [True], True),
     ]  # fmt: skip
 
@@ -314,7 +314,7 @@ def test_a_condition_may_hold_always_or_never() -> None:
     tree = Tree(b"def positive(x):\n    return x if x > 0.0 else -x\n", "positive", {}, ())
     fixed = [candidate for candidate in slips(tree, ["x"], ()) if candidate.condition]
     assert {tree.function(candidate)(3.0) for candidate in fixed} == {3.0, -3.0}
-    assert {(tree.words(candidate).shown[0].before, candidate.condition) for candidate in fixed} == {
+    assert {(tree.words(candidate).replacements[0].before, candidate.condition) for candidate in fixed} == {
         ("x > 0.0", "always"), ("x > 0.0", "never"),
     }  # fmt: skip
 
@@ -406,7 +406,7 @@ def shown(source: bytes, *kinds: Any) -> list[tuple[str, str]]:
     """The edits of a function in words."""
     tree = Tree(source, "one", {}, ())
     found = (tree.words(candidate) for kind in kinds for candidate in kind(tree) if tree.function(candidate))
-    return [(one.before, one.after) for words in found for one in words.shown]
+    return [(one.before, one.after) for words in found for one in words.replacements]
 
 
 def near(tree: Tree) -> Any:

@@ -37,7 +37,7 @@ def filled() -> Recorder:
 
 
 def number_of(recorder: Recorder) -> int | None:
-    shown = recorder.shown
+    shown = recorder.shown_frame
     return None if shown is None else shown.frame.number  # type: ignore[attr-defined]
 
 

@@ -34,7 +34,7 @@ def recorded(name: str, frames: int = 6) -> tuple[Any, tuple[RecordedFrame, ...]
         loop.tick(1 / 25)
         wall += 1 / 25
         recorder.note(loop.latest, wall)
-    return kind, recorder.kept(), [row for _, row in loop.run.snapshots.plot_rows]
+    return kind, recorder.all_frames(), [row for _, row in loop.run.snapshots.plot_rows]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -36,7 +36,7 @@ class Lab:
 
     @property
     def time(self) -> float | None:
-        shown = self.recorder.shown
+        shown = self.recorder.shown_frame
         return None if shown is None else shown.time
 
 

@@ -66,7 +66,7 @@ def show(viewer: Viewer, name: str) -> GuideTab:
     """Show a task."""
     guide = guide_of(viewer)
     guide.workbook.go(next(i for i, task in enumerate(guide.workbook.tasks) if task.name == name))
-    wait_for(lambda: guide.shown is not None and guide.shown.name == name)
+    wait_for(lambda: guide.shown_task is not None and guide.shown_task.name == name)
     return guide
 
 
@@ -76,8 +76,8 @@ def widgets_of(guide: GuideTab, key: str) -> QuestionWidgets:
 
 def test_the_guide_of_a_scene_begins_with_its_first_question_and_turns(plain: Viewer) -> None:
     guide = guide_of(plain)
-    assert guide.shown is not None
-    assert guide.shown.item == "3.2-1"
+    assert guide.shown_task is not None
+    assert guide.shown_task.item == "3.2-1"
     assert "Complete the rope" in guide.text.content
     does(guide.tasks.on_turn, ON)
     wait_for(lambda: "Euler" in guide.text.content)
@@ -148,8 +148,8 @@ def test_a_task_of_another_scene_opens_it_and_stays_the_shown_one(plain: Viewer)
     wait_for(lambda: plain.is_open and plain.panel.kind.name == "cloth")
     assert plain.scene.params == type(plain.scene.params)()
     again = guide_of(plain)
-    assert again.shown is not None
-    assert again.shown.name == "cloth_links"
+    assert again.shown_task is not None
+    assert again.shown_task.name == "cloth_links"
     # The set-up of a task is not what the scene opens with later.
     assert "cloth" not in plain.first_params
 
@@ -213,7 +213,7 @@ def test_a_text_is_kept_when_the_typing_pauses_and_when_the_task_is_left(student
         "reflectance", "explain"
     ]
     does(guide.tasks.on_turn, ON)
-    wait_for(lambda: guide.shown is not None and guide.shown.name != "reflectance")
+    wait_for(lambda: guide.shown_task is not None and guide.shown_task.name != "reflectance")
     assert read_answers(folder).values["reflectance", "explain"] == "Hardly any light comes"
     again = widgets_of(show(student, "reflectance"), "explain")
     assert again.field.value == "Hardly any light comes"
@@ -333,7 +333,7 @@ def test_a_page_that_is_turned_in_the_middle_of_a_look_does_not_tick_off_a_step_
     does(guide.on_tool, SET_UP)
     wait_for(lambda: vars(student.scene.params)["integrator"] == "explicit_euler")
     guide = guide_of(student)
-    wait_for(lambda: guide.shown is not None and guide.shown.name == "step_euler")
+    wait_for(lambda: guide.shown_task is not None and guide.shown_task.name == "step_euler")
     student.served.stop_threads()
     workbook, watched = guide.workbook, []
     set_up_of = workbook.set_up_of

@@ -80,9 +80,9 @@ def test_a_page_with_a_link_is_turned_to_its_task() -> None:
 def shown_task(lab: Viewer) -> str:
     """Name of the task in the panel, once its scene is open."""
     guide = lab.panel.guide if lab.is_open else None
-    if guide is None or guide.shown is None or not guide.is_set_up_here(guide.shown):
+    if guide is None or guide.shown_task is None or not guide.is_set_up_here(guide.shown_task):
         return ""
-    return guide.shown.name
+    return guide.shown_task.name
 
 
 def follow(share: Share, query: str) -> None:

@@ -233,9 +233,9 @@ def test_recording_and_replay_hold_the_name_of_the_file_and_no_folder(tmp_path):
     for i in range(4):
         loop.tick(1 / 25)
         recorder.note(loop.latest, i / 25)
-    page = replay_html(SCENE, recorder.kept(), Plotted((), {}))  # type: ignore[arg-type]
+    page = replay_html(SCENE, recorder.all_frames(), Plotted((), {}))  # type: ignore[arg-type]
     file = tmp_path / "recording.npz"
-    file.write_bytes(recording_npz(SCENE, recorder.kept()))  # type: ignore[arg-type]
+    file.write_bytes(recording_npz(SCENE, recorder.all_frames()))  # type: ignore[arg-type]
     with np.load(file) as found:
         about = str(found["about"])
     for text in (page, about):

@@ -66,10 +66,10 @@ def written(mesh: Path) -> dict[str, bytes]:
     assert main(command) == 0
     data = to_dataset(KIND, loop.scene, (), write_query(KIND, params))
     return {
-        "recording.npz": recording_npz(KIND, recorder.kept()),
+        "recording.npz": recording_npz(KIND, recorder.all_frames()),
         "run.npz": out.read_bytes(),
         "setup.json": write_file(KIND, params, name="Mine").encode(),
-        "replay.html": replay_html(KIND, recorder.kept(), Plotted((), {})).encode(),
+        "replay.html": replay_html(KIND, recorder.all_frames(), Plotted((), {})).encode(),
         "link.txt": write_query(KIND, params).encode(),
         "dataset.json": json.dumps(data.to_dict(data=False), default=str).encode(),
     }

@@ -93,15 +93,15 @@ MISTAKES = (
 )
 
 
-def contrast(found, right, rows, cols):
+def contrast(result, right, rows, cols):
     """The kinds of links that are missing, and those that are too many."""
-    if found.ndim != 2 or found.shape[1] != 2:
+    if result.ndim != 2 or result.shape[1] != 2:
         return ""
-    has, needs = ({tuple(pair) for pair in links.tolist()} for links in (found, right))
+    has, needs = ({tuple(pair) for pair in links.tolist()} for links in (result, right))
     missing, extra = kinds(needs - has, cols), kinds(has - needs, cols)
     parts = [f"missing: {missing}"] if missing else []
     parts += [f"too many: {extra}"] if extra else []
-    twice = len(found) - len(has)
+    twice = len(result) - len(has)
     parts += [f"{twice} {'link is' if twice == 1 else 'links are'} there twice"] if twice > 0 else []
     return f"For {rows} x {cols} points: {'; '.join(parts)}." if parts else ""
 

@@ -15,6 +15,7 @@ from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.handles.viser_inside import set_arrays
+from app.render.injection import injector_of
 from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball
@@ -36,7 +37,7 @@ from app.scenes.square_sea.parameters import (
     rain_settings,
 )
 from app.scenes.square_sea.quantities import here
-from app.scenes.square_sea.rain_view import RainMesh
+from app.scenes.square_sea.rain_view import RainMesh, SprayMesh, spray_settings
 from app.scenes.square_sea.tile_mesh import Highest
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
@@ -104,6 +105,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.server, self.post = server, post
         self.water: DrawnWater | None = None
         self.rain: RainMesh | None = None
+        self.spray: SprayMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
         self.staff: WaveStaff | None = None
         self.mark: viser.LabelHandle | None = None
@@ -156,6 +158,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         if self.last is None or frame.vertices is not self.last.vertices:
             frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
+            self.show_spray(frame)
             self.show_gauge(frame)
             self.mark_highest(frame)
         self.last = frame
@@ -217,6 +220,17 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
             if self.rain is None:
                 self.rain = RainMesh(self.server, rain, settings, self.material.exposure)
             self.rain.show(rain)
+
+    def show_spray(self, frame: SeaFrame) -> None:
+        """Draw the spray in browsers with shaders; its mesh is made for one wind."""
+        settings = None if injector_of(self.server) is None else spray_settings(frame.params)
+        if self.spray is not None and self.spray.settings != settings:
+            self.spray.remove()
+            self.spray = None
+        if self.spray is None and settings is not None:
+            self.spray = SprayMesh(self.server, settings, self.material.exposure)
+        if self.spray is not None:
+            self.spray.show(frame.foam)
 
     def show_gauge(self, frame: SeaFrame) -> None:
         """Draw the wave gauge where it is shown: a buoy, or in a nonlinear sea a staff."""

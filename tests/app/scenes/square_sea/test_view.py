@@ -13,6 +13,7 @@ from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.formats.formatting import number
 from app.formats.round_step import round_step
+from app.render.injection import disable_shaders
 from app.render.material import blend
 from app.render.staff import UPRIGHT_SIDES, upright
 from app.scenes.square_sea import rain_view
@@ -76,6 +77,51 @@ def test_drops_fall_as_fast_as_the_root_of_gravity(server: viser.ViserServer, mo
     first, last = made[0]["dropSizes"], made[-1]["dropSizes"]
     assert last[1] / first[1] == pytest.approx(2.0)
     assert first[1] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_spray_needs_foam_and_a_wind_of_more_than_beaufort_6(server: viser.ViserServer) -> None:
+    for params in (SquareSeaParams(wind_speed=13.8), SquareSeaParams(wind_speed=25.0, foam=False)):
+        assert rain_view.spray_settings(params) is None
+    gale, storm, hurricane = (
+        rain_view.spray_settings(SquareSeaParams(wind_speed=wind, wind_direction=90.0, foam_fade=3.0))
+        for wind in (19.0, 26.0, 50.0)
+    )
+    assert gale is not None
+    assert storm is not None
+    assert hurricane is not None
+    assert 0 < gale.drops < storm.drops == hurricane.drops == rain_view.SPRAY_DROPS
+    assert storm.wind == pytest.approx((0.0, 26.0), abs=1e-12)
+    # Foam that was full SPRAY_TIME ago: `tile_mesh.set_mesh` fades it so.
+    assert storm.least_foam == pytest.approx(math.exp(-rain_view.SPRAY_TIME / 3.0))
+
+
+@pytest.mark.parametrize("has_shaders", [True, False])
+def test_spray_is_shown_only_while_foam_is_fresh(server: viser.ViserServer, has_shaders: bool) -> None:
+    if not has_shaders:
+        disable_shaders(server)
+    view = SquareSeaView(server, lambda command: None)
+    scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", wind_speed=30.0))
+    frame = scene.frame()
+    limit = math.exp(-rain_view.SPRAY_TIME / scene.params.foam_fade)
+
+    def show(largest: float) -> None:
+        foam = np.zeros_like(frame.foam)
+        foam[3, 5] = largest
+        view.show(frame._replace(foam=foam, vertices=frame.vertices.copy()))
+
+    show(0.99 * limit)
+    if not has_shaders:
+        assert view.spray is None
+        return
+    assert view.spray is not None
+    spray = view.spray
+    assert not spray.mesh.visible
+    show(1.01 * limit)
+    assert spray.mesh.visible
+    assert view.spray is spray
+    calm = dataclasses.replace(frame.params, wind_speed=5.0)
+    view.show(frame._replace(params=calm, vertices=frame.vertices.copy()))
+    assert view.spray is None
 
 
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:

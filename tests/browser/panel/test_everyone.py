@@ -185,8 +185,17 @@ def check_keyboard(viewer: Viewer, tab: Tab, scene: str) -> None:
     page.get_by_role("slider").and_(page.locator(".multi-slider-thumb")).first.focus()
     press("ArrowRight")
     tab.wait(lambda: viewer.settings.params != before, 20)
+    after = viewer.settings.params
     press("Control+z")
     tab.wait(lambda: viewer.settings.params == before, 20)
+    for redo in ("Control+Shift+z", "Control+y"):
+        press(redo)
+        tab.wait(lambda: viewer.settings.params == after, 20)
+        press("Control+z")
+        tab.wait(lambda: viewer.settings.params == before, 20)
+    press("Meta+y")  # of the browser's history on a Mac
+    page.wait_for_timeout(500)
+    assert viewer.settings.params == before
     page.get_by_role("tab", selected=True).first.focus()
     press("ArrowRight")
     controls = page.get_by_role("tab", name="Controls", exact=True)

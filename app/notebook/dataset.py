@@ -9,7 +9,7 @@ import numpy as np
 
 from app.messages import PlotRow
 from app.scenes.charts import Chart, Columns, chart_of, numbers_of
-from app.scenes.contract import AnyKind, AnyScene
+from app.scenes.contract import AnyKind, AnyScene, Layout
 from app.scenes.quantities import measured
 from sim.parameters import parameters_of
 
@@ -27,7 +27,7 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     import xarray as xr  # half a second
 
     variables: dict[str, Labelled] = {}
-    layout = kind.layout(scene)
+    layout = Layout({}, {}, frozenset()) if kind.layout is None else kind.layout(scene)
     table = np.array([*rows]).reshape(-1, 1 + len(kind.series))
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
     for column, name in enumerate(kind.series, 1):

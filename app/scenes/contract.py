@@ -309,7 +309,7 @@ class SceneKind(Generic[P, F, R]):
     file_facts: Callable[[P], FileFacts | None] = lambda params: None
     file_editing: FileEditing | None = None  # of such a file; None: the panel cannot change it
     warnings: Callable[..., Sequence[str]] | None = None  # of a new scene: sentences on its start
-    layout: Callable[..., Layout] = lambda scene: Layout({}, {}, frozenset())
+    layout: Callable[..., Layout] | None = None  # of a scene
     awaited: Awaited | None = None  # event up to which the panel offers to run
     opening: str = ""  # preset shown first by default: one that moves; "" for the defaults
 

@@ -25,7 +25,7 @@ const RAIN_VERTEX = `
   varying vec2 vPatch; // place in a patch of spray, whose edge is at 1; 0 in rain
   ${WATER_GLSL.noise}
   ${WATER_GLSL.waves}
-  const int SPRAY_TRIES = 6; // places of which a drop of spray takes the one with the freshest foam
+  const int SPRAY_TRIES = 6; // places at random: a drop of spray takes the one with the freshest foam
   const float SPRAY_AHEAD = 0.45; // distance from the eye to the middle of the box, over the side of the box
   const float SPRAY_LAG = 0.4; // [s] in which it reaches the speed of the wind
   const float SPRAY_STRETCH = 2.2; // length of a patch along its way over its width

@@ -21,6 +21,10 @@ from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams
 from app.scenes.square_sea.quantities import here
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import (
+    DRYING_TIME,
+    FLOAT_DRAFT,
+    FLOAT_RADIUS,
+    FLOAT_TOP,
     MAX_RIPPLE_SLOPE,
     OVERCAST_DEEP,
     OVERCAST_FROM,
@@ -28,6 +32,7 @@ from app.scenes.square_sea.view import (
     SPAR_TOP,
     SquareSeaView,
     WaveGaugeMesh,
+    reach_at,
 )
 
 
@@ -124,6 +129,41 @@ def test_spray_is_shown_only_while_foam_is_fresh(server: viser.ViserServer, has_
     assert view.spray is None
 
 
+def test_the_float_is_wet_up_to_where_water_reached_lately_and_dries(server: viser.ViserServer) -> None:
+    gauge = WaveGaugeMesh(server)
+
+    def foot(time: float, reach: float) -> tuple[float, float]:
+        """Lower and upper end [m] of the wet part, above the water."""
+        gauge.show((3.0, 4.0, 1.5), time, reach)
+        part = gauge.parts["foot"]
+        low = float(part.batched_positions[0, 2]) - 1.5
+        return low, low + float(part.batched_scales[0, 2])  # type: ignore[index]
+
+    assert foot(10.0, 0.04) == pytest.approx((-FLOAT_DRAFT, 0.04), abs=1e-6)
+    assert foot(11.0, 0.3)[1] == pytest.approx(0.3, abs=1e-6)
+    assert foot(11.0, 0.04)[1] == pytest.approx(0.3, abs=1e-6)  # a pause dries nothing
+    assert foot(11.0 + 0.2 * DRYING_TIME, 0.04)[1] == pytest.approx(0.3 - 0.2 * FLOAT_TOP, abs=1e-6)
+    assert foot(11.0 + 3.0 * DRYING_TIME, 0.04)[1] == pytest.approx(0.04, abs=1e-6)
+    assert foot(12.0, 0.3)[1] == pytest.approx(0.3, abs=1e-6)
+    assert foot(0.0, 0.05)[1] == pytest.approx(0.05, abs=1e-6)  # a new run
+
+
+def test_water_reaches_up_the_float_by_its_slope_and_fresh_foam_wets_all_of_it() -> None:
+    frame = SquareSeaScene(SquareSeaParams(size="64", mesh="32", length=64.0, wind_speed=30.0)).frame()
+    slopes, foam = np.zeros_like(frame.slopes), np.zeros_like(frame.foam)
+    frame = frame._replace(gauge=(20.0, 50.0, 0.0), slopes=slopes, foam=foam)
+    level = reach_at(frame)
+    slopes[10, 25] = 0.3, -0.4
+    assert reach_at(frame) - level == pytest.approx(0.5 * FLOAT_RADIUS)
+    slopes[10, 25] = 3.0, 0.0
+    assert reach_at(frame) == FLOAT_TOP
+    foam[10, 25] = 1.0
+    assert reach_at(frame) > FLOAT_TOP
+    calm = frame._replace(params=dataclasses.replace(frame.params, wind_speed=5.0))
+    assert reach_at(calm) == FLOAT_TOP
+    assert reach_at(frame._replace(gauge=None)) == 0.0
+
+
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:
     view = SquareSeaView(server, lambda command: None)
     scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", length=64.0))
@@ -152,7 +192,7 @@ def test_the_wave_gauge_moves_with_the_vertices_of_the_water_and_not_as_a_node(s
     view.show(frame)
     assert frame.gauge is not None
     changes = {message.name: message.updates for message in sent if hasattr(message, "updates")}
-    for part in ("spar", "float", "ball"):
+    for part in ("spar", "float", "ball"):  # the foot's place depends on its height
         np.testing.assert_allclose(changes[f"/gauge/{part}"]["batched_positions"], [frame.gauge], atol=1e-5)
     assert not any(isinstance(message, SetPositionMessage | SetOrientationMessage) for message in sent)
 
@@ -198,7 +238,9 @@ def test_a_nonlinear_sea_has_a_staff_beside_which_its_camera_stands(server: vise
 
 
 def test_the_parts_of_the_wave_gauge_stand_on_one_another(server):
-    spar, float_, ball = (part.batched_positions[0] + part.vertices for part in WaveGaugeMesh(server).parts)
+    spar, float_, ball = (
+        part.batched_positions[0] + part.vertices for part in list(WaveGaugeMesh(server).parts.values())[:3]
+    )
     assert (spar[:, 2].min(), spar[:, 2].max()) == pytest.approx((-1.2, SPAR_TOP))
     assert float_[:, 2].min() == pytest.approx(-0.1)  # in the water
     assert 0.0 < float_[:, 2].max() < SPAR_TOP

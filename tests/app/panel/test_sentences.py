@@ -35,7 +35,8 @@ UNSTABLE: dict[str, dict[str, float]] = {
 }  # fmt: skip
 ACTS = (
     "force", "unstable", "unstable", "mend", "mend", "preset", "reset", "pull", "plots", "undo", "redo", "play",
-    "pause", "step", "switch", "switch", "switch", "switch_back", "compile_ahead", "compile_ahead", "end_compiling", "hold",
+    "pause", "step", "switch", "switch", "switch", "switch_back", "compile_ahead", "compile_ahead",
+    "end_compiling", "hold",
 )  # fmt: skip
 SIZES = {"square_sea": {"size": "64", "mesh": "64"}}  # which the list of sizes has
 STATES = ("Running", "Paused", "Stopped", "Slow motion")

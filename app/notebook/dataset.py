@@ -9,7 +9,7 @@ import numpy as np
 
 from app.messages import PlotRow
 from app.scenes.charts import Chart, Columns, chart_of, numbers_of
-from app.scenes.contract import AnyKind, AnyScene
+from app.scenes.contract import AnyKind, AnyScene, Layout
 from app.scenes.quantities import measured
 from sim.parameters import parameters_of
 
@@ -27,14 +27,16 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     import xarray as xr  # half a second
 
     variables: dict[str, Labelled] = {}
+    layout = Layout({}, {}, frozenset()) if kind.layout is None else kind.layout(scene)
     table = np.array([*rows]).reshape(-1, 1 + len(kind.series))
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
     for column, name in enumerate(kind.series, 1):
-        variables[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
+        if name not in layout.unused:
+            variables[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
     for name, (array, unit) in scene.arrays().items():
         # If a plot has the same name, the name is that of the state.
         own = f"state_{name}" if name in variables else name
-        dimensions = tuple(f"{own}_{axis}" for axis in range(array.ndim))
+        dimensions = layout.axes.get(name) or tuple(f"{own}_{axis}" for axis in range(array.ndim))
         variables[own] = (dimensions, array, attributes(*split_unit(unit)))
     # The columns of the plots are there already.
     for name, measure in (measured(kind, scene) if kind.quantities else {}).items():
@@ -42,10 +44,12 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
         variables[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
     for parameter, columns in (scene.curves() or {}).items():
         variables.update(columns_of(kind, parameter, columns))
-    coordinates = {
+    coordinates: dict[str, tuple[str | tuple[str, ...], np.ndarray, dict[str, str]]] = {
         "t": ("t", table[:, 0], attributes("s", "simulated time")),
         "now": ((), np.array(scene.time), attributes("s", "simulated time of the state")),
     }
+    for dimension, labels in layout.labels.items():
+        coordinates[dimension] = (dimension, np.array(labels), {})
     values = {name: getattr(scene.params, name) for name in parameters_of(scene.params)}
     about = {"scene": kind.name, "link": link, "parameters": json.dumps(values),
              "notes": "\n".join(kind.notes(scene.params))}  # fmt: skip

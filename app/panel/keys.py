@@ -10,13 +10,14 @@ from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import Html
 
-Key = Literal["space", "G", "N", "P", "R", "U", "Z", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
+Key = Literal["space", "G", "N", "P", "R", "U", "Y", "Z", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 Modifier = Literal["cmd/ctrl", "cmd/ctrl+shift"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 KEYS = Html(
     "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset camera · <b>P</b> plots · "
-    "<b>G</b> grid · <b>U</b> or <b>Ctrl+Z</b> undo · <b>Ctrl+Shift+Z</b> redo · <b>C</b> to the first control · "
-    "<b>L</b> projector · <b>1-9</b> presets · <b>Tab</b> to the next control, on a Mac to buttons with Option"
+    "<b>G</b> grid · <b>U</b> or <b>Ctrl+Z</b> undo · <b>Ctrl+Shift+Z</b> or <b>Ctrl+Y</b> redo · "
+    "<b>C</b> to the first control · <b>L</b> projector · <b>1-9</b> presets · "
+    "<b>Tab</b> to the next control, on a Mac to buttons with Option"
 )
 
 
@@ -31,6 +32,7 @@ def add_keys(gui: viser.GuiApi, settings: SceneSettings, reset_view: Callable[[v
         ("Undo", "U", None, settings.undo),
         ("Undo", "Z", "cmd/ctrl", settings.undo),
         ("Redo", "Z", "cmd/ctrl+shift", settings.redo),
+        ("Redo", "Y", "cmd/ctrl", settings.redo),  # with Cmd the key is the browser's: js/panel/keys.js
     ]
     for number, preset in enumerate(settings.kind.presets, 1):
         # The presets after the ninth are in the command palette and the list only.

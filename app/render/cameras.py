@@ -20,6 +20,11 @@ from app.render.handles.of_handles import OfHandles
 NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
 FIT_MARGIN = 1.1  # room around what a camera shows
 SAME_PLACE = 0.02  # [m] within which a camera, or its target, is where it was put
+NOTICE_TIME = 30.0  # [s] after which a notice goes by itself
+LIFTED = (
+    "The view begins higher",
+    "The camera of this set-up is below the floor or the water, so this view begins above it.",
+)
 Camera = viser.CameraHandle | viser.InitialCameraConfig
 
 
@@ -52,6 +57,9 @@ def set_clipping(server: viser.ViserServer, near: float = NEAR, far: float = FAR
 
 _wanted: OfHandles[NDArray[np.float64]] = OfHandles()  # (2, 3) [m] where a camera is to be
 _watched: OfHandles[bool] = OfHandles()  # the reports of these cameras are looked at
+_sunk: OfHandles[NDArray[np.float64]] = OfHandles()  # (2, 3) [m] of a camera below 0 that its page has just taken
+# The notice in the browser of a camera that the page has lifted, and the place (2, 3) [m] to which it did so.
+_lifted: OfHandles[tuple[viser.NotificationHandle, NDArray[np.float64]]] = OfHandles()
 _placing = threading.Lock()  # viewer thread, callbacks and changes of the scene place cameras
 
 
@@ -166,17 +174,39 @@ def has_taken(wanted: NDArray[np.float64], reported: NDArray[np.float64]) -> boo
     return bool(np.abs(off[1]).max() <= SAME_PLACE and abs(change) <= SAME_PLACE)
 
 
+def follow_lift(camera: viser.CameraHandle, reported: NDArray[np.float64]) -> None:
+    """Say that a page has lifted a camera to this place (2, 3) [m], and remove the notice once it is elsewhere.
+
+    A page may first report the place below, where it stays in a mooring. Waves change the height of a camera alone.
+    """
+    sunk, lifted = _sunk.get(camera), _lifted.get(camera)
+    if lifted is not None:
+        notice, place = lifted
+        off = np.abs(reported - place)
+        if max(off[:, :2].max(), off[1, 2]) > SAME_PLACE:
+            notice.remove()
+            _lifted.drop(camera)
+    if sunk is None or np.abs(reported - sunk).max() <= SAME_PLACE:
+        return
+    _sunk.drop(camera)
+    if reported[0, 2] > 0.0 and has_taken(sunk, reported) and _lifted.get(camera) is None:
+        notice = camera.client.add_notification(*LIFTED, color="orange", auto_close_seconds=NOTICE_TIME)
+        _lifted.put(camera, (notice, reported))
+
+
 async def on_report(camera: viser.CameraHandle) -> None:
     """A page has reported its camera: place it again where it is not where it was placed."""
+    reported = place_of(camera)
     with _placing:
         wanted = _wanted.get(camera)
-        if wanted is None:
-            return
-        if has_taken(wanted, place_of(camera)):
+        if wanted is not None and has_taken(wanted, reported):
             _wanted.drop(camera)
-        else:
+            if wanted[0, 2] < 0.0:
+                _sunk.put(camera, wanted)
+        elif wanted is not None:
             position, target = wanted
             set_camera(camera, position, target)
+        follow_lift(camera, reported)
 
 
 def client_cameras(server: viser.ViserServer) -> tuple[ClientCamera, ...]:

@@ -24,8 +24,8 @@ WATER_UNIFORMS = (
     "rainRings", "rainVeil", "firePlace", "fireLight", "gaugePlace",
 )  # fmt: skip
 MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
-# The same for the shader of the rain, `js/sea/rain.js`.
-RAIN_UNIFORMS = ("rain", "streak", "dropSizes", "dropMotion")
+# The same for the shader of rain and spray, `js/sea/rain.js`.
+RAIN_UNIFORMS = ("rain", "streak", "dropSizes", "dropMotion", "spray")
 
 
 @dataclass(frozen=True)

@@ -252,6 +252,14 @@ class FileEditing(NamedTuple):
     content: Callable[..., tuple[str, bytes]]  # params -> name and content of the file with its changes
 
 
+class Layout(NamedTuple):
+    """Names of the dimensions of a scene's arrays, in the dataset of a notebook."""
+
+    axes: Mapping[str, tuple[str, ...]]  # array of `Scene.arrays` -> its dimensions; others have numbered ones
+    labels: Mapping[str, Sequence[str] | Sequence[int]]  # dimension -> coordinates along it
+    unused: frozenset[str]  # columns of the plot rows for things that the scene does not have
+
+
 @dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
     """All facts of a scene that are known without making it."""
@@ -301,6 +309,7 @@ class SceneKind(Generic[P, F, R]):
     file_facts: Callable[[P], FileFacts | None] = lambda params: None
     file_editing: FileEditing | None = None  # of such a file; None: the panel cannot change it
     warnings: Callable[..., Sequence[str]] | None = None  # of a new scene: sentences on its start
+    layout: Callable[..., Layout] | None = None  # of a scene
     awaited: Awaited | None = None  # event up to which the panel offers to run
     opening: str = ""  # preset shown first by default: one that moves; "" for the defaults
 

@@ -11,6 +11,7 @@ from app.scenes.mooring.scene import (
     advice,
     file_facts,
     is_stable,
+    layout,
     needs,
     notes,
     on_use,
@@ -46,4 +47,5 @@ SCENE = SceneKind(
     file_facts=file_facts,
     file_editing=EDITING,
     quantities=QUANTITIES,
+    layout=layout,
 )  # fmt: skip

@@ -4,7 +4,7 @@ import dataclasses
 from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Advice, FileFacts, Pieces
+from app.scenes.contract import Advice, FileFacts, Layout, Pieces
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.files.from_file import opened
@@ -97,3 +97,16 @@ def file_facts(params: MooringParams) -> FileFacts | None:
         "lines": [{**line._asdict(), "type": line.type.name} for line in system.lines],
     }  # fmt: skip
     return FileFacts("mooring", facts, frozenset(OF_NO_FILE))
+
+
+def layout(scene: LineScene) -> Layout:
+    """Dimensions of the arrays; lines are numbered as in the picture, those of a file's arrays have its numbers."""
+    lines = len(scene.points)
+    axes = {
+        "x": ("line", "node", "axis"), "tension": ("line", "segment"), "end_tension": ("line", "end"),
+        "body": ("axis",), "rotation": ("axis",), "vessel": ("axis",),
+        **{f"x_{line.id}": (f"node_{line.id}", "axis") for line in scene.system.lines},
+        **{f"tension_{line.id}": (f"segment_{line.id}",) for line in scene.system.lines},
+    }  # fmt: skip
+    labels = {"line": range(1, lines + 1), "axis": ("x", "y", "z"), "end": ("anchor", "fairlead")}
+    return Layout(axes, labels, frozenset(LINE_SERIES[lines:] + ANCHOR_SERIES[lines:]))

@@ -19,7 +19,7 @@ from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.ends_view import DrawnEnds
 from app.scenes.mooring.drawing.lines_view import DrawnLines
 from app.scenes.mooring.drawing.watch_view import WatchCircle
-from app.scenes.mooring.drawing.water_view import SeenWater
+from app.scenes.mooring.drawing.water_view import LineRings, SeenWater
 from app.scenes.mooring.drawing.waves_view import WaveHeight
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
@@ -45,6 +45,7 @@ class DrawnMooring(NamedTuple):
     watch: WatchCircle
     waves: WaveHeight
     water: SeenWater
+    rings: LineRings
 
 
 class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
@@ -81,6 +82,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         return DrawnMooring(
             DrawnBed(server, frame, label), DrawnLines(server, frame), DrawnBody(server, frame, self.on_body),
             DrawnEnds(server, frame), WatchCircle(server, frame), WaveHeight(server), SeenWater(server, frame),
+            LineRings(server, frame),
         )  # fmt: skip
 
     @staticmethod

@@ -1,10 +1,12 @@
-"""Rain as it is drawn: a streak for each drop and a crown of streaks for each splash, in buffers of fixed size.
+"""Rain and spray as they are drawn: streaks for drops, crowns of streaks for splashes, in buffers of fixed size.
 
 Streaks are a mesh, because viser replaces lines at each update but moves a mesh of fixed faces in place. The shader
 in `js/sea/rain.js` fades streaks near the camera, keeps distant ones a pixel wide, and lights them by the sky.
 Where there is a shader, it draws thousands of further drops around the camera, with the same sizes, speeds and wind;
-they are sent once and hit nothing.
+they are sent once and hit nothing. So does the spray of breaking crests, which leaves the water where foam is fresh.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 import viser
@@ -12,7 +14,7 @@ import viser
 from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RAIN_UNIFORMS
-from app.scenes.square_sea.parameters import RainSettings
+from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams, rain_settings
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
 from sim.particles.rain import rainfall, slope_parameter
 from sim.water import EARTH_GRAVITY
@@ -29,6 +31,16 @@ NEAR_HALF_WIDTH = 0.0022  # [m] of such a drop for each millimetre of its diamet
 NEAR_OPACITY = 0.85
 CROWN_DROPS = 6  # thrown up by a splash
 CROWN_HEIGHT, CROWN_RADIUS = 0.16, 0.09  # [m]
+# Beaufort 7, from which spray is drawn, and 10, from which all of its drops are: by the WMO's code table 1100 spindrift
+# leaves the crests at 8, and spray affects the visibility from 9 on.
+SPRAY_WIND = 14.0, 26.0  # [m/s]
+SPRAY_DROPS = 5000  # at most
+SPRAY_BOX = 100.0  # [m] side of the box before the camera that they are in
+SPRAY_HALF_WIDTH = 1.5  # [m] of the widest
+SPRAY_OPACITY = 0.65
+SPRAY_FADE_DISTANCE = 3.0  # [m] from the camera
+SPRAY_LIFE, SPRAY_SPEED = 1.6, 5.0  # [s], and [m/s] with which the fastest leave the water
+SPRAY_TIME = 1.5  # [s] after a crest has broken in which it throws spray
 HIDDEN_HEIGHT = -1e3  # [m] where unused streaks are kept
 CORNER_ANGLES = 2.0 * np.pi / 3.0 * np.arange(3)
 HEAD_CORNERS = STREAK_HALF_WIDTH * np.stack(  # (3, 3) [m] around the head of a streak
@@ -77,6 +89,7 @@ class RainMesh:
             "streak": (STREAK_HALF_WIDTH, MIN_STREAK_ANGLE, 0.0),
             "dropSizes": (1e-3 * slope_parameter(settings.rate), speed_factor, EXPOSURE_TIME),
             "dropMotion": (*settings.wind, 0.0),
+            "spray": (0.0, 0.0, 0.0),
         }
         self.drops = StreakMesh(server, "/rain/drops", self.count, uniforms)
         self.crowns = StreakMesh(server, "/rain/splashes", MAX_SPLASHES * CROWN_DROPS, uniforms)
@@ -116,3 +129,49 @@ class RainMesh:
             self.near.mesh.remove()
         self.drops.mesh.remove()
         self.crowns.mesh.remove()
+
+
+class SpraySettings(NamedTuple):
+    """The part of the parameters that the spray depends on."""
+
+    wind: tuple[float, float]  # [m/s]
+    drops: int
+    least_foam: float  # that throws spray: what is left of full foam after SPRAY_TIME
+
+
+def spray_settings(params: SquareSeaParams) -> SpraySettings | None:
+    """The spray of these parameters; None if the wind is too weak for spray or there is no foam."""
+    wind = rain_settings(params).wind
+    low, high = SPRAY_WIND
+    drops = round(SPRAY_DROPS * min(max((float(np.hypot(*wind)) - low) / (high - low), 0.0), 1.0))
+    if not params.foam or drops == 0:
+        return None
+    return SpraySettings(wind, drops, float(np.exp(-SPRAY_TIME / params.foam_fade)))
+
+
+class SprayMesh:
+    """Spray in browsers with shaders, hidden while no crest has just broken."""
+
+    def __init__(self, server: viser.ViserServer, settings: SpraySettings, exposure: float) -> None:
+        """exposure: of the water's material."""
+        self.settings = settings
+        self.mesh = StreakMesh(
+            server, "/spray", settings.drops,
+            {
+                "rain": (SPRAY_OPACITY, exposure, SPRAY_FADE_DISTANCE),
+                "streak": (SPRAY_HALF_WIDTH, MIN_STREAK_ANGLE, SPRAY_BOX),
+                "dropSizes": (0.0, 0.0, 0.0),
+                "dropMotion": (*settings.wind, 0.0),
+                "spray": (SPRAY_LIFE, SPRAY_SPEED, settings.least_foam),
+            },
+        ).mesh  # fmt: skip
+
+    def show(self, foam: np.ndarray) -> None:
+        """Draw it if some of this foam, 0 to 1, is fresh; else hide it."""
+        is_shown = bool(foam.max() > self.settings.least_foam)
+        if self.mesh.visible != is_shown:
+            self.mesh.visible = is_shown
+
+    def remove(self) -> None:
+        """Remove it from the scene."""
+        self.mesh.remove()

@@ -15,6 +15,7 @@ from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.handles.viser_inside import set_arrays
+from app.render.injection import add_data_mesh, injector_of
 from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball
@@ -36,7 +37,7 @@ from app.scenes.square_sea.parameters import (
     rain_settings,
 )
 from app.scenes.square_sea.quantities import here
-from app.scenes.square_sea.rain_view import RainMesh
+from app.scenes.square_sea.rain_view import RainMesh, SprayMesh, spray_settings
 from app.scenes.square_sea.tile_mesh import Highest
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
@@ -66,7 +67,10 @@ MIN_RIPPLE_LENGTHS = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tens
 FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hides the facets of the mesh
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
-FLOAT_RADIUS, FLOAT_TOP, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.09, 3.0  # [m]
+FLOAT_RADIUS, FLOAT_TOP, FLOAT_DRAFT, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.1, 0.09, 3.0  # [m]
+# The wet foot of the float: its least height above the water, what spray wets of it, and the time in which that dries.
+LEAST_WET, SPRAYED, DRYING_TIME = 0.04, FLOAT_TOP + 0.002, 25.0  # [m], [m], [s]
+WET_COLOUR = (0.56, 0.21, 0.07)
 GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
@@ -104,6 +108,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.server, self.post = server, post
         self.water: DrawnWater | None = None
         self.rain: RainMesh | None = None
+        self.spray: SprayMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
         self.staff: WaveStaff | None = None
         self.mark: viser.LabelHandle | None = None
@@ -156,6 +161,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         if self.last is None or frame.vertices is not self.last.vertices:
             frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
+            self.show_spray(frame)
             self.show_gauge(frame)
             self.mark_highest(frame)
         self.last = frame
@@ -218,6 +224,17 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
                 self.rain = RainMesh(self.server, rain, settings, self.material.exposure)
             self.rain.show(rain)
 
+    def show_spray(self, frame: SeaFrame) -> None:
+        """Draw the spray in browsers with shaders; its mesh is made for one wind."""
+        settings = None if injector_of(self.server) is None else spray_settings(frame.params)
+        if self.spray is not None and self.spray.settings != settings:
+            self.spray.remove()
+            self.spray = None
+        if self.spray is None and settings is not None:
+            self.spray = SprayMesh(self.server, settings, self.material.exposure)
+        if self.spray is not None:
+            self.spray.show(frame.foam)
+
     def show_gauge(self, frame: SeaFrame) -> None:
         """Draw the wave gauge where it is shown: a buoy, or in a nonlinear sea a staff."""
         if marches(frame.params):
@@ -229,7 +246,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         if self.gauge is None and frame.gauge is not None:
             self.gauge = WaveGaugeMesh(self.server)
         if self.gauge is not None:
-            self.gauge.show(frame.gauge)
+            self.gauge.show(frame.gauge, frame.time, reach_at(frame))
             assert self.water is not None
             self.water.set_waterlines(waterlines_of(frame.gauge))
 
@@ -237,7 +254,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         """Draw the staff at the wave gauge; it is made for one place and one height of the waves."""
         place = None if frame.gauge is None else (*frame.gauge[:2], here(frame.params).height)
         if self.gauge is not None:
-            self.gauge.show(None)
+            self.gauge.show(None, frame.time, 0.0)
         if self.staff is not None and self.staff.place != place:
             self.staff.remove()
             self.staff = None
@@ -301,7 +318,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
 
 
 class WaveGaugeMesh:
-    """The wave gauge: a buoy with a spar and a ball, 3 m high.
+    """The wave gauge: a buoy with a spar and a ball, 3 m high, whose float is wet up to where water reached lately.
 
     Each part is a batch of one: a slow page places nodes before it draws the new vertices of the water, but the
     instances of a batch together with them.
@@ -311,29 +328,55 @@ class WaveGaugeMesh:
         vertices, faces = ball(8)
         parts = {
             "spar": (*upright(SPAR_RADIUS, -1.2, SPAR_TOP), SPAR_COLOUR),
-            "float": (*upright(FLOAT_RADIUS, -0.1, FLOAT_TOP), GAUGE_COLOUR),
+            "float": (*upright(FLOAT_RADIUS, -FLOAT_DRAFT, FLOAT_TOP), GAUGE_COLOUR),
             "ball": (0.3 * vertices + (0.0, 0.0, SPAR_TOP), faces, GAUGE_COLOUR),
+            "foot": (
+                *upright(1.01 * FLOAT_RADIUS, 0.0, 1.0),
+                WET_COLOUR,
+            ),  # of height 1, scaled to that of the wet part
         }
-        self.parts = [
-            server.scene.add_batched_meshes_simple(
+        self.parts = {
+            name: server.scene.add_batched_meshes_simple(
                 f"/gauge/{name}",
                 mesh.astype(np.float32),
                 triangles,
                 batched_wxyzs=np.array([[1.0, 0.0, 0.0, 0.0]], np.float32),
                 batched_positions=np.zeros((1, 3), np.float32),
+                batched_scales=np.ones((1, 3), np.float32),
                 batched_colors=as_linear_bytes(colour),
                 lod="off",
                 flat_shading=name != "ball",
             )
             for name, (mesh, triangles, colour) in parts.items()
-        ]
+        }
+        if injector_of(server) is not None:
+            add_data_mesh(server, "/gauge/foot/wet", np.zeros((1, 3)))
+        self.wet, self.time = 0.0, 0.0  # [m] above the water, at a time [s]
 
-    def show(self, position: Vector | None) -> None:
-        """Draw it at a position [m]; None hides it."""
-        for part in self.parts:
+    def show(self, position: Vector | None, time: float, reach: float) -> None:
+        """Draw it at a position [m]; None hides it. reach: [m] above it that the water reaches at this time [s]."""
+        passed = time - self.time
+        dried = FLOAT_TOP * passed / DRYING_TIME if passed >= 0.0 else self.wet  # a run that began again is dry
+        self.wet, self.time = max(self.wet - dried, reach), time
+        for name, part in self.parts.items():
             part.visible = position is not None
             if position is not None:
                 set_arrays(part, batched_positions=np.array([position]))
+            if position is not None and name == "foot":
+                x, y, z = position
+                scales = np.array([[1.0, 1.0, FLOAT_DRAFT + self.wet]])
+                set_arrays(part, batched_positions=np.array([(x, y, z - FLOAT_DRAFT)]), batched_scales=scales)
+
+
+def reach_at(frame: SeaFrame) -> float:
+    """Height [m] above the wave gauge's water that waves along its float, and spray of fresh foam there, reach now."""
+    if frame.gauge is None:
+        return 0.0
+    n, spray = len(frame.foam), spray_settings(frame.params)
+    i, j = (round(c / frame.params.length * n) % n for c in frame.gauge[:2])
+    if spray is not None and frame.foam[i, j] > spray.least_foam:
+        return SPRAYED
+    return min(LEAST_WET + FLOAT_RADIUS * float(np.hypot(*frame.slopes[i, j])), FLOAT_TOP)
 
 
 def waterlines_of(gauge: Vector | None) -> list[Waterline]:

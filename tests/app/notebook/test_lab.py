@@ -1,13 +1,16 @@
 """The handle of a lab in a notebook, without a notebook."""
 
+import dataclasses
 import json
 import random
+import re
 import signal
 import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -198,6 +201,45 @@ def test_a_chart_that_is_not_over_time_is_in_the_data_over_its_own_columns() -> 
     assert len(columns[0]) > 1
     np.testing.assert_array_equal(data.errors_t, columns[0])
     np.testing.assert_array_equal(data.errors_below_the_accuracy_of_the_reference, columns[1])
+
+
+@pytest.mark.parametrize("lines", [1, 3, 4])
+def test_the_data_of_a_mooring_have_named_dimensions_and_only_lines_that_exist(lines: int) -> None:
+    kind = scene_named("mooring")
+    scene = kind.make(check_record(kind.params, {"lines": lines, "segments": 12}))
+    scene.advance(40)
+    arrays, rows = scene.arrays(), scene.take_plot_rows()
+    data = to_dataset(kind, scene, rows, "")
+    assert len(rows) > 0
+    assert dict(data.sizes) == {"t": len(rows), "line": lines, "node": 13, "segment": 12, "axis": 3, "end": 2} | {
+        name: size for name, size in data.sizes.items() if name.startswith("restoring")
+    }
+    np.testing.assert_array_equal(data.x.sel(axis="z"), arrays["x"][0][..., 2])
+    np.testing.assert_array_equal(data.x.sel(line=lines), arrays["x"][0][lines - 1])
+    np.testing.assert_array_equal(data.end_tension.sel(end="fairlead"), arrays["end_tension"][0][:, 1])
+    assert float(data.body.sel(axis="y")) == arrays["body"][0][1]
+    assert data.tension.dims == ("line", "segment")
+    plotted = {name for name in data.variables if re.fullmatch(r"(line|anchor)_\d", name)}
+    assert plotted == {f"{part}_{i}" for part in ("line", "anchor") for i in range(1, lines + 1)}
+    last = np.array(rows[-1])[1 : 1 + lines]
+    np.testing.assert_array_equal([float(data[f"line_{i}"][-1]) for i in range(1, lines + 1)], last)
+    assert not any(np.isnan(data[name]).any() for name in plotted)
+
+
+def test_the_data_of_a_mooring_from_a_file_have_a_dimension_for_the_nodes_of_each_line() -> None:
+    kind = scene_named("mooring")
+    path = Path(__file__).parents[2] / "sim" / "mooring" / "moordyn" / "files" / "chain.txt"
+    scene = kind.make(dataclasses.replace(kind.params(), moordyn_file=str(path)))
+    data = to_dataset(kind, scene, (), "")
+    (line,) = scene.system.lines  # type: ignore[attr-defined]
+    x = data[f"x_{line.id}"]
+    assert x.dims == (f"node_{line.id}", "axis")
+    np.testing.assert_array_equal(x.sel(axis="z"), scene.arrays()[f"x_{line.id}"][0][:, 2])
+    assert data[f"tension_{line.id}"].dims == (f"segment_{line.id}",)
+    assert data.vessel.dims == ("axis",)
+    assert data.end_tension.dims == ("line", "end")
+    assert "line_1" in data
+    assert "line_2" not in data
 
 
 def test_without_a_browser_there_is_no_picture_and_the_error_says_so(rope: Lab, monkeypatch) -> None:

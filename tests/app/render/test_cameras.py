@@ -1,5 +1,6 @@
 """Cameras: a view that frames points; a page that reports an old place late is sent the new one again."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ class FakeCamera:
     def __init__(self) -> None:
         self.sent: dict[str, Any] = {}  # the last of each kind
         self.callbacks: list[Any] = []
+        self.notices: list[str] = []
+        self.client = self
         self.believed: dict[str, Any] = {"position": np.zeros(3), "look_at": np.zeros(3), "fov": 1.0}
 
     def __getattr__(self, name: str) -> Any:
@@ -27,6 +30,12 @@ class FakeCamera:
             super().__setattr__(name, value)
         elif not np.allclose(self.believed[name], value):
             self.believed[name] = self.sent[name] = np.array(value, float)
+
+    def add_notification(self, title: str, body: str, **how: Any) -> SimpleNamespace:
+        """The camera is its own client."""
+        words = f"{title}. {body}"
+        self.notices.append(words)
+        return SimpleNamespace(remove=lambda: self.notices.remove(words))
 
     def on_update(self, callback: Any) -> None:
         self.callbacks.append(callback)
@@ -94,6 +103,58 @@ def test_a_page_that_lifts_its_camera_out_of_the_water_has_taken_it() -> None:
     put(camera, NEW)
     camera.report([(x, y, z + 1.0) for x, y, z in NEW])
     assert not waits(camera)
+
+
+UNDER = (8.0, 3.0, -3.0), (0.0, 0.0, -1.0)
+LIFTED = (8.1325, 3.0497, 0.25), (0.0, 0.0, -1.0)  # as far from the same target
+
+
+SHIFTED = (8.0, 3.0, 0.25), (0.0, 0.0, 2.25)
+
+
+@pytest.mark.parametrize("lifted", [LIFTED, SHIFTED], ids=["turned", "shifted"])
+@pytest.mark.parametrize("first", [OLD, UNDER], ids=["late", "before the sea is there"])
+def test_a_notice_says_that_a_camera_was_lifted_out_of_the_water_until_it_moves(first: Any, lifted: Any) -> None:
+    camera = FakeCamera()
+    put(camera, UNDER)
+    camera.report(first)
+    assert camera.notices == []
+    camera.report(lifted)
+    assert not waits(camera)
+    assert len(camera.notices) == 1
+    assert "below the floor or the water" in camera.notices[0]
+    (x, y, z), target = lifted
+    camera.report(((x, y, z + 2.0), target))  # over a crest
+    assert len(camera.notices) == 1
+    put(camera, UNDER)  # the same link again
+    camera.report(lifted)
+    assert len(camera.notices) == 1
+    camera.report(((x + 0.5, y, z), target))
+    assert camera.notices == []
+    camera.report(lifted)
+    assert camera.notices == []
+
+
+@pytest.mark.parametrize(
+    ("placed", "reported"),
+    [(NEW, [(x, y, z + 1.0) for x, y, z in NEW]), (UNDER, UNDER), (UNDER, ((-8.0, -3.0, -3.0), UNDER[1]))],
+    ids=["a crest", "under water, as in a mooring", "turned under water"],
+)
+def test_no_notice_comes_if_a_view_begins_where_it_was_placed(placed: Any, reported: Any) -> None:
+    camera = FakeCamera()
+    put(camera, placed)
+    camera.report(reported)
+    assert not waits(camera)
+    assert camera.notices == []
+
+
+def test_no_notice_comes_if_a_person_turns_a_camera_out_of_the_water() -> None:
+    camera = FakeCamera()
+    put(camera, UNDER)
+    for height in (-3.0, -2.9, -1.0, 0.5):
+        level = np.hypot(8.0, 3.0) ** 2 + 4.0 - (height + 1.0) ** 2
+        camera.report(((np.sqrt(level - 9.0), 3.0, height), UNDER[1]))
+        assert camera.notices == []
 
 
 def test_a_page_that_lowers_its_camera_has_not_taken_it() -> None:

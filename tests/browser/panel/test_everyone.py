@@ -24,7 +24,8 @@ SHAPES = {
     "button": '[data-springtide-icon="Reset"]',
     "track": ".multi-slider-track",
     "thumb": ".multi-slider-thumb",
-    "tab": '[role="tab"]',
+    "chosen tab": '[role="tab"][aria-selected="true"]',
+    "other tab": '[role="tab"][aria-selected="false"]',
     "field": "input.mantine-TextInput-input",
     "list": ".mantine-Select-input",
     "time line": "#springtide-time button",
@@ -96,15 +97,15 @@ def luminance(colours: np.ndarray) -> np.ndarray:
 
 
 def edge_contrast(tab: Tab, name: str, box: tuple[float, float, float, float]) -> float:
-    """Ratio of luminance across the left and the right edge of a shape, half way up: the smaller of the two.
+    """Ratio of luminance across the edges of a shape, in their middles: the smallest of them.
 
-    The track crosses these edges of a thumb: its upper and its lower edge stand out.
+    The left and the right edge count. The track crosses these edges of a thumb: its upper and its lower edge stand out.
+    A tab has all four.
     """
     x, y, width, height = box
-    if name == "thumb":
-        clips = [(x + 0.5 * width - 1, edge - 4, 2, 8) for edge in (y, y + height)]
-    else:
-        clips = [(edge - 4, y + 0.5 * height - 1, 8, 2) for edge in (x, x + width)]
+    upright = [(edge - 4, y + 0.5 * height - 1, 8, 2) for edge in (x, x + width)]
+    level = [(x + 0.5 * width - 1, edge - 4, 2, 8) for edge in (y, y + height)]
+    clips = level if name == "thumb" else upright + level if name.endswith(" tab") else upright
     found = []
     for clip in clips:
         picture = iio.imread(tab.page.screenshot(clip=dict(zip(("x", "y", "width", "height"), clip, strict=True))))
@@ -132,6 +133,15 @@ def check_shapes(viewer: Viewer, tab: Tab, scene: str) -> None:
             assert edge_contrast(tab, name, box) >= MIN_SHAPE_CONTRAST, name
         tab.page.keyboard.press("Escape")
         tab.wait(lambda opened=opened: not tab.page.evaluate(SHOWN_BOXES, {opened: opened}), 10)
+    for name, box in shapes.items():
+        assert edge_contrast(tab, name, box) >= MIN_SHAPE_CONTRAST, name
+
+
+def check_tabs(viewer: Viewer, tab: Tab, scene: str) -> None:
+    """In a narrow window, where the tabs are below the block with the buttons."""
+    tab.page.wait_for_timeout(500)
+    shapes = tab.page.evaluate(SHOWN_BOXES, {name: SHAPES[name] for name in ("chosen tab", "other tab")})
+    assert len(shapes) == 2
     for name, box in shapes.items():
         assert edge_contrast(tab, name, box) >= MIN_SHAPE_CONTRAST, name
 
@@ -185,8 +195,17 @@ def check_keyboard(viewer: Viewer, tab: Tab, scene: str) -> None:
     page.get_by_role("slider").and_(page.locator(".multi-slider-thumb")).first.focus()
     press("ArrowRight")
     tab.wait(lambda: viewer.settings.params != before, 20)
+    after = viewer.settings.params
     press("Control+z")
     tab.wait(lambda: viewer.settings.params == before, 20)
+    for redo in ("Control+Shift+z", "Control+y"):
+        press(redo)
+        tab.wait(lambda: viewer.settings.params == after, 20)
+        press("Control+z")
+        tab.wait(lambda: viewer.settings.params == before, 20)
+    press("Meta+y")  # of the browser's history on a Mac
+    page.wait_for_timeout(500)
+    assert viewer.settings.params == before
     page.get_by_role("tab", selected=True).first.focus()
     press("ArrowRight")
     controls = page.get_by_role("tab", name="Controls", exact=True)
@@ -269,6 +288,7 @@ def check_layouts(viewer: Viewer, tab: Tab, scene: str) -> None:
 
 WAYS = {
     "forced colours": Way(check_shapes, {"forced_colors": "active", "height": 1200}),
+    "forced colours, narrow": Way(check_tabs, {"forced_colors": "active", "width": 420, "height": 800}),
     "dark": Way(check_dark, {"color_scheme": "dark"}),
     "large text": Way(check_large, begin=enlarge),
     "zoom 200 %": Way(check_zoomed, {"width": 640, "height": 400, "device_scale_factor": 2}),

@@ -1,6 +1,7 @@
 """The camera in a real browser: it stays above floor and water, returns, and its picture fills the free area."""
 
 import random
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -123,6 +124,26 @@ def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], 
     tab.wait(lambda: np.abs(view_of(lab) - first).max() > 1.0)
     assert tab.page.evaluate("window.lowest") > 0.0
     assert not tab.errors
+
+
+@pytest.mark.long
+def test_a_link_with_a_camera_under_water_says_until_the_next_move_that_the_view_begins_above_it(
+    open_tab: Callable[..., Tab],
+) -> None:
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.open("square_sea", check_record(scene_named("square_sea").params, SMALL["square_sea"]))
+        tab = open_tab(lab.port, query="&scene=square_sea&size=64&mesh=32&camera=8,3,-3,0,0,-1")
+        notice = tab.page.get_by_text("below the floor or the water")
+        tab.wait(notice.count)
+        assert view_of(lab)[0, 2] > 0.0
+        tab.page.wait_for_timeout(1500)  # waves pass under the camera
+        assert notice.count() == 1
+        drag_at_random(tab, random.Random(3), 2)
+        tab.wait(lambda: notice.count() == 0)
+        assert not tab.errors
+    finally:
+        lab.shut()
 
 
 @pytest.mark.long

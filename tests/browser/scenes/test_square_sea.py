@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.scenes.square_sea.rain_view import SPRAY_DROPS
 from app.scenes.square_sea.scene import SquareSeaParams
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
@@ -81,6 +82,31 @@ def test_rain_draws_drops_and_makes_rings(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(lambda: lab.scene.counts["rings"] > 20 and heights(tab).std() > 1e-4)
     set_parameters(lab, rain=0.0)
     tab.wait(lambda: len(tab.vertices("/rain/drops")) == 0)
+    assert tab.errors == []
+
+
+def test_breaking_crests_in_a_storm_throw_spray_which_people_who_want_less_motion_do_not_see(
+    shown: tuple[Viewer, Tab],
+) -> None:
+    lab, tab = shown
+    tab.wait(lambda: has_shader(lab))
+
+    def drawn() -> int:
+        mesh = "window.__viserMutable.nodeRefFromName['/spray']?.children.find((child) => child.isMesh)"
+        return tab.page.evaluate(f"{mesh}?.parent.visible ? {mesh}.geometry.drawRange.count : 0")
+
+    assert drawn() == 0
+    set_parameters(lab, transition=0.0, wind_speed=30.0)
+    tab.wait(lambda: 9 < drawn() <= 9 * SPRAY_DROPS)
+    material = "window.__viserMutable.nodeRefFromName['/spray'].children.find((child) => child.isMesh).material"
+    assert tab.page.evaluate(f"{material}.userData.springtide").startswith("springtide-rain/spray")
+    assert tab.page.evaluate(f"{material}.depthWrite") is False
+    tab.page.emulate_media(reduced_motion="reduce")
+    tab.wait(lambda: drawn() == 0)
+    tab.page.emulate_media(reduced_motion="no-preference")
+    tab.wait(lambda: drawn() > 9)
+    set_parameters(lab, foam=False)
+    tab.wait(lambda: drawn() == 0)
     assert tab.errors == []
 
 

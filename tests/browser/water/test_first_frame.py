@@ -43,11 +43,13 @@ window.fetch = (asked, how) => {
 SHOWS_OTHER_SKY = "Boolean(window.__viserMutable?.scene?.environment)"
 SKY = "window.__viserMutable.scene.environment?.uuid ?? ''"
 WATCH_SKY = f"window.skies = new Set(), setInterval(() => window.skies.add({SKY}), 20)"
-# Keeps the clock's words of the moment at which the cover goes: `firstClock`.
+# Keeps the clock's words of the moment at which the cover goes, in a replay the number in its time box: `firstClock`.
 WATCH_CLOCK = """window.firstClock = "";
+const TIME_BOX = "input.mantine-NumberInput-input";
 new MutationObserver(() => {
     if (window.firstClock || !document.querySelector("#springtide-cover.springtide-hidden")) return;
-    window.firstClock = document.querySelector(".springtide-panel[data-state]")?.innerText ?? "no panel";
+    const panel = document.querySelector(".springtide-panel[data-state]"), box = document.querySelector(TIME_BOX);
+    window.firstClock = panel?.innerText ?? box?.value ?? "no clock";
 }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ["class"] });"""
 COVERED = "document.querySelector('#springtide-cover:not(.springtide-hidden)')?.innerText ?? ''"
 
@@ -120,6 +122,29 @@ def test_a_run_stands_at_its_start_in_the_first_whole_picture(
         lab.shut()
     assert clock is not None
     assert float(clock[1]) <= LATEST
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=pytest.mark.long if name == "rope" else pytest.mark.stress) for name in CLIPS]
+)
+@pytest.mark.parametrize("drawn", [True, False], ids=["slow", "quick"])
+def test_a_replay_stands_at_its_first_frame_in_its_first_whole_picture(
+    scene: str, drawn: bool, chromium: Any, tmp_path: Path
+) -> None:
+    file = tmp_path / "replay.html"
+    clip = CLIPS[scene]
+    file.write_text(page_of(scene, clip._replace(end=clip.start + 2.0, rate=5.0)), "utf-8")
+    page = new_page(chromium, 400, 260, drawn=drawn)
+    try:
+        page.add_init_script(WATCH_CLOCK)
+        page.goto(file.as_uri(), wait_until="commit")
+        assert wait(page, lambda: page.evaluate("window.firstClock"), 300.0)
+        assert float(page.evaluate("window.firstClock")) <= LATEST
+        box = page.locator("input.mantine-NumberInput-input").first
+        assert wait(page, lambda: float(box.input_value()) > 0.5)
+    finally:
+        page.close()
 
 
 @pytest.mark.stress

@@ -9,7 +9,7 @@ function update() {
   const button = document.querySelector('[data-springtide-icon="Undo"]');
   if (!acts || !button) return;
   const { undo, redo } = acts;
-  const again = redo && `. Redo: ${redo} (Ctrl+Shift+Z)`;
+  const again = redo && `. Redo: ${redo} (Ctrl+Shift+Z or Ctrl+Y)`;
   const title = `${undo ? `Undo: ${undo} (U or Ctrl+Z)` : "There is nothing to undo"}${again}`;
   if (button.title !== title) button.title = title;
   if (button.disabled === Boolean(undo)) button.disabled = !undo;

@@ -8,6 +8,8 @@ export const isTyping = ({ target }) => target instanceof Element && target.matc
 
 page.listen(window, "keydown", (event) => {
   if (isTyping(event)) return;
+  const isBrowsers = event.metaKey && !event.ctrlKey && latinKey(event).key === "y"; // Cmd+Y shows the history, viser would redo
+  if (isBrowsers) return void event.stopPropagation();
   for (const [name, value] of Object.entries(latinKey(event))) {
     if (Reflect.get(event, name) !== value) Object.defineProperty(event, name, { value });
   }

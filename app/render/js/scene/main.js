@@ -28,12 +28,13 @@ import { preparePhotograph } from "./photograph.js";
 import { dressSmoke } from "./smoke.js";
 import { drawOneLightOfEachSun } from "./sun.js";
 import { vertexColors } from "./vertex_colors.js";
+import { wet } from "./wet.js";
 
 // Each shader: { suffix, unpack(node), update(context), removeUnused() }. `unpack` (optional) brings the vertices up to
 // date before the camera of the frame is placed. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of the resources of removed nodes.
 /** @type {NodeShader[]} */
-const SHADERS = [vertexColors, openWater, contact, water, rain];
+const SHADERS = [vertexColors, openWater, contact, water, rain, wet];
 
 /** @type {string[]} */
 let drawn = [];

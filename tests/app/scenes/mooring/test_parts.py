@@ -14,7 +14,7 @@ from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.square import square_faces, square_points
 from app.scenes.mooring.drawing.watch_view import LABELLED, WatchCircle
-from app.scenes.mooring.drawing.water_view import SeenWater
+from app.scenes.mooring.drawing.water_view import LineRings, SeenWater
 from app.scenes.mooring.drawing.waves_view import WaveHeight
 from app.scenes.mooring.files.from_file import mooring_of, slack_of
 from app.scenes.mooring.frame import EndStatistics
@@ -202,3 +202,33 @@ def test_a_staff_beside_the_body_is_as_high_as_the_waves(server: Any, scene: Moo
         assert waves.staff is same
     show(0.0)
     assert waves.staff is None
+
+
+def test_a_ring_lies_on_the_water_around_each_place_where_a_line_passes_through_it(
+    server: Any, scene: MooringScene
+) -> None:
+    frame = scene.frame()
+    rows, nodes = len(frame.surface), frame.points.shape[1]
+    axis = np.linspace(-0.5, 0.5, rows) * frame.side
+    sea = (0.5 + 0.02 * axis[:, None] - 0.03 * axis).astype(np.float32)  # a plane
+    place = np.array([4.0, -7.0, 0.5 + 0.02 * 4.0 + 0.03 * 7.0])
+    way = np.array([0.3, -0.2, 1.0])
+    through = place + np.linspace(-9.0, 5.0, nodes)[:, None] * way
+    under = through - (0.0, 0.0, 20.0)
+    frame = frame._replace(surface=sea, points=np.stack([through, under]).astype(np.float32))
+    rings = LineRings(server, frame)
+    assert not rings.handle.visible
+    rings.show(frame)
+    assert rings.handle.visible
+    pieces = np.asarray(rings.handle.points, float)
+    np.testing.assert_allclose(np.linalg.norm(pieces - place, axis=-1), rings.radius, rtol=1e-5)
+    np.testing.assert_allclose(pieces[..., 2], place[2], atol=1e-5)
+    np.testing.assert_allclose(pieces[1:, 0], pieces[:-1, 1], atol=1e-6)
+    rings.show(frame._replace(points=np.stack([through, through[::-1] + (1.0, 0.0, 0.02)]).astype(np.float32)))
+    two = np.asarray(rings.handle.points, float)
+    np.testing.assert_allclose(two[len(pieces) :], pieces + (1.0, 0.0, 0.02), atol=1e-5)
+    rings.show(frame._replace(params=dataclasses.replace(frame.params, surface=False)))
+    assert not rings.handle.visible
+    rings.show(frame._replace(points=np.stack([under, under]).astype(np.float32)))
+    assert not rings.handle.visible
+    rings.remove()

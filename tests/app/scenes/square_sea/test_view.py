@@ -13,6 +13,7 @@ from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.formats.formatting import number
 from app.formats.round_step import round_step
+from app.render.injection import disable_shaders
 from app.render.material import blend
 from app.render.staff import UPRIGHT_SIDES, upright
 from app.scenes.square_sea import rain_view
@@ -20,6 +21,10 @@ from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams
 from app.scenes.square_sea.quantities import here
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import (
+    DRYING_TIME,
+    FLOAT_DRAFT,
+    FLOAT_RADIUS,
+    FLOAT_TOP,
     MAX_RIPPLE_SLOPE,
     OVERCAST_DEEP,
     OVERCAST_FROM,
@@ -27,6 +32,7 @@ from app.scenes.square_sea.view import (
     SPAR_TOP,
     SquareSeaView,
     WaveGaugeMesh,
+    reach_at,
 )
 
 
@@ -78,6 +84,86 @@ def test_drops_fall_as_fast_as_the_root_of_gravity(server: viser.ViserServer, mo
     assert first[1] == pytest.approx(1.0, abs=1e-3)
 
 
+def test_spray_needs_foam_and_a_wind_of_more_than_beaufort_6(server: viser.ViserServer) -> None:
+    for params in (SquareSeaParams(wind_speed=13.8), SquareSeaParams(wind_speed=25.0, foam=False)):
+        assert rain_view.spray_settings(params) is None
+    gale, storm, hurricane = (
+        rain_view.spray_settings(SquareSeaParams(wind_speed=wind, wind_direction=90.0, foam_fade=3.0))
+        for wind in (19.0, 26.0, 50.0)
+    )
+    assert gale is not None
+    assert storm is not None
+    assert hurricane is not None
+    assert 0 < gale.drops < storm.drops == hurricane.drops == rain_view.SPRAY_DROPS
+    assert storm.wind == pytest.approx((0.0, 26.0), abs=1e-12)
+    # Foam that was full SPRAY_TIME ago: `tile_mesh.set_mesh` fades it so.
+    assert storm.least_foam == pytest.approx(math.exp(-rain_view.SPRAY_TIME / 3.0))
+
+
+@pytest.mark.parametrize("has_shaders", [True, False])
+def test_spray_is_shown_only_while_foam_is_fresh(server: viser.ViserServer, has_shaders: bool) -> None:
+    if not has_shaders:
+        disable_shaders(server)
+    view = SquareSeaView(server, lambda command: None)
+    scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", wind_speed=30.0))
+    frame = scene.frame()
+    limit = math.exp(-rain_view.SPRAY_TIME / scene.params.foam_fade)
+
+    def show(largest: float) -> None:
+        foam = np.zeros_like(frame.foam)
+        foam[3, 5] = largest
+        view.show(frame._replace(foam=foam, vertices=frame.vertices.copy()))
+
+    show(0.99 * limit)
+    if not has_shaders:
+        assert view.spray is None
+        return
+    assert view.spray is not None
+    spray = view.spray
+    assert not spray.mesh.visible
+    show(1.01 * limit)
+    assert spray.mesh.visible
+    assert view.spray is spray
+    calm = dataclasses.replace(frame.params, wind_speed=5.0)
+    view.show(frame._replace(params=calm, vertices=frame.vertices.copy()))
+    assert view.spray is None
+
+
+def test_the_float_is_wet_up_to_where_water_reached_lately_and_dries(server: viser.ViserServer) -> None:
+    gauge = WaveGaugeMesh(server)
+
+    def foot(time: float, reach: float) -> tuple[float, float]:
+        """Lower and upper end [m] of the wet part, above the water."""
+        gauge.show((3.0, 4.0, 1.5), time, reach)
+        part = gauge.parts["foot"]
+        low = float(part.batched_positions[0, 2]) - 1.5
+        return low, low + float(part.batched_scales[0, 2])  # type: ignore[index]
+
+    assert foot(10.0, 0.04) == pytest.approx((-FLOAT_DRAFT, 0.04), abs=1e-6)
+    assert foot(11.0, 0.3)[1] == pytest.approx(0.3, abs=1e-6)
+    assert foot(11.0, 0.04)[1] == pytest.approx(0.3, abs=1e-6)  # a pause dries nothing
+    assert foot(11.0 + 0.2 * DRYING_TIME, 0.04)[1] == pytest.approx(0.3 - 0.2 * FLOAT_TOP, abs=1e-6)
+    assert foot(11.0 + 3.0 * DRYING_TIME, 0.04)[1] == pytest.approx(0.04, abs=1e-6)
+    assert foot(12.0, 0.3)[1] == pytest.approx(0.3, abs=1e-6)
+    assert foot(0.0, 0.05)[1] == pytest.approx(0.05, abs=1e-6)  # a new run
+
+
+def test_water_reaches_up_the_float_by_its_slope_and_fresh_foam_wets_all_of_it() -> None:
+    frame = SquareSeaScene(SquareSeaParams(size="64", mesh="32", length=64.0, wind_speed=30.0)).frame()
+    slopes, foam = np.zeros_like(frame.slopes), np.zeros_like(frame.foam)
+    frame = frame._replace(gauge=(20.0, 50.0, 0.0), slopes=slopes, foam=foam)
+    level = reach_at(frame)
+    slopes[10, 25] = 0.3, -0.4
+    assert reach_at(frame) - level == pytest.approx(0.5 * FLOAT_RADIUS)
+    slopes[10, 25] = 3.0, 0.0
+    assert reach_at(frame) == FLOAT_TOP
+    foam[10, 25] = 1.0
+    assert reach_at(frame) > FLOAT_TOP
+    calm = frame._replace(params=dataclasses.replace(frame.params, wind_speed=5.0))
+    assert reach_at(calm) == FLOAT_TOP
+    assert reach_at(frame._replace(gauge=None)) == 0.0
+
+
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:
     view = SquareSeaView(server, lambda command: None)
     scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", length=64.0))
@@ -106,7 +192,7 @@ def test_the_wave_gauge_moves_with_the_vertices_of_the_water_and_not_as_a_node(s
     view.show(frame)
     assert frame.gauge is not None
     changes = {message.name: message.updates for message in sent if hasattr(message, "updates")}
-    for part in ("spar", "float", "ball"):
+    for part in ("spar", "float", "ball"):  # the foot's place depends on its height
         np.testing.assert_allclose(changes[f"/gauge/{part}"]["batched_positions"], [frame.gauge], atol=1e-5)
     assert not any(isinstance(message, SetPositionMessage | SetOrientationMessage) for message in sent)
 
@@ -152,7 +238,9 @@ def test_a_nonlinear_sea_has_a_staff_beside_which_its_camera_stands(server: vise
 
 
 def test_the_parts_of_the_wave_gauge_stand_on_one_another(server):
-    spar, float_, ball = (part.batched_positions[0] + part.vertices for part in WaveGaugeMesh(server).parts)
+    spar, float_, ball = (
+        part.batched_positions[0] + part.vertices for part in list(WaveGaugeMesh(server).parts.values())[:3]
+    )
     assert (spar[:, 2].min(), spar[:, 2].max()) == pytest.approx((-1.2, SPAR_TOP))
     assert float_[:, 2].min() == pytest.approx(-0.1)  # in the water
     assert 0.0 < float_[:, 2].max() < SPAR_TOP

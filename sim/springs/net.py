@@ -411,7 +411,7 @@ class Net(PointSystem[Run]):
         """`RubArrays` of a list that is not yet made."""
         touching = np.empty((self.most_pairs + 1, 2), np.int64)
         touching[-1] = -1
-        return RubArrays(touching, np.empty((self.most_pairs, 13)))
+        return RubArrays(touching, np.empty((self.most_pairs, 13)), np.empty((self.most_pairs, 5)))
 
     def _cell_arrays(self) -> dict[str, Any]:
         """`CellArrays` of a list that is not yet made."""

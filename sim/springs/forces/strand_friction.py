@@ -3,7 +3,8 @@
 Two places that touch get the tangential forces that stop them along each other against the sum of all other forces, at
 most mu N, as points do on a surface (`sim.springs.forces.friction`). A link may touch several others, so that all are
 solved together, pair by pair in sweeps to and fro (M. Jean 1999, The non-smooth contact dynamics method, section 5),
-until no force changes by more than SETTLED of its limit, or after SWEEPS.
+until no force changes by more than SETTLED of the largest mu N, or after SWEEPS. A kick begins with the impulses of the
+one before in the same call, so that MORE_SWEEPS are enough, even in a tight knot.
 
 A chain has no torsion: the forces act at the nearest places of the links' axes, and the moment of their distance, which
 would twist the strands, is left out.
@@ -20,7 +21,8 @@ from sim.springs.points.arrays import StrandArrays
 from sim.springs.points.link_pairs import LinkPair, opening_of, pair_at
 from sim.springs.points.order import in_turn
 
-SWEEPS = 50  # at most
+SWEEPS = 50
+MORE_SWEEPS = 4
 SETTLED = 1e-6
 # Columns of p.rubs: the pair's places and normal as in `LinkPair`, mu N [N], its mobility [1/kg], the force on its
 # second link [N], and the impulse [N s].
@@ -38,14 +40,15 @@ def rubbing(p, i):
 
 @kernel(allocates=False)
 def note(x, v, p):
-    """Note the touching pairs with the force mu N of each; returns their number."""
-    count = touching_at_hand(x, p)
+    """Note the touching pairs with the force mu N of each; returns their number, and the largest mu N [N]."""
+    count, largest = touching_at_hand(x, p), 0.0
     for i in range(count):
         pair, row = pair_at(x, p.cols, p.touching[i, 0], p.touching[i, 1]), p.rubs[i]
         row[0], row[1], row[2], row[3], row[4] = pair.s, pair.t, pair.nx, pair.ny, pair.nz
         row[MOST] = p.friction * push_of(v, p, pair, depth_of(p, pair), True)
         row[MOBILITY] = pair_mobility(p, pair)
-    return count
+        largest = max(largest, row[MOST])
+    return count, largest
 
 
 @kernel(inline=True)
@@ -57,18 +60,15 @@ def along_surface(pair, u, v, w):
 
 @kernel(inline=True)
 def change(out, p, i, pair, column, fx, fy, fz):
-    """Set the force, or impulse, on the second link of a pair, with what it adds to `out`.
-
-    Returns the square of its change over that of mu N.
-    """
-    n, w, row, most = p.cols, p.inverse_masses, p.rubs[i], p.rubs[i, MOST]
+    """Set the force, or impulse, on the second link of a pair, with what it adds to `out`; returns its change, squared."""
+    n, w, row = p.cols, p.inverse_masses, p.rubs[i]
     dx, dy, dz = fx - row[column], fy - row[column + 1], fz - row[column + 2]
     row[column], row[column + 1], row[column + 2] = fx, fy, fz
     add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a], dx, dy, dz)
     add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1], dx, dy, dz)
     add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b], dx, dy, dz)
     add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1], dx, dy, dz)
-    return (dx * dx + dy * dy + dz * dz) / (most * most)
+    return dx * dx + dy * dy + dz * dz
 
 
 @kernel(inline=True)
@@ -80,7 +80,7 @@ def clear(p, count, column):
 
 @kernel(allocates=False)
 def sweep_forces(v, p, count, reverse, a):
-    """One sweep of `accelerate`; returns the largest change of a force, as `change` does."""
+    """One sweep of `accelerate`; returns the largest change of a force, squared."""
     n, largest = p.cols, 0.0
     for turn in range(count):
         i = in_turn(turn, count, reverse)
@@ -103,17 +103,17 @@ def sweep_forces(v, p, count, reverse, a):
 def accelerate(x, v, t, p, with_damping, f, a):
     if not with_damping:
         return
-    count = note(x, v, p)
+    count, most = note(x, v, p)
     clear(p, count, FORCE_AT)
     for sweep in range(SWEEPS):
-        if sweep_forces(v, p, count, sweep % 2 == 1, a) <= SETTLED * SETTLED:
+        if sweep_forces(v, p, count, sweep % 2 == 1, a) <= (SETTLED * most) ** 2:
             break
 
 
 @kernel(allocates=False)
 def foresee(x, v, t, p):
     """Set the forces of pairs that slide at v, before a kick that `hold` ends."""
-    for i in range(note(x, v, p)):
+    for i in range(note(x, v, p)[0]):
         pair, most, w = rubbing(p, i), p.rubs[i, MOST], p.rubs[i, MOBILITY]
         u, q, r = opening_of(v, p.cols, pair)
         tx, ty, tz = along_surface(pair, u, q, r)
@@ -125,7 +125,7 @@ def foresee(x, v, t, p):
 
 @kernel(allocates=False)
 def sweep_impulses(v, s, p, count, foreseen, reverse):
-    """One sweep of `hold`; returns the largest change of an impulse, as `change` does, over s^2."""
+    """One sweep of `hold`; returns the largest change of an impulse, squared."""
     largest = 0.0
     for turn in range(count):
         i = in_turn(turn, count, reverse)
@@ -142,7 +142,7 @@ def sweep_impulses(v, s, p, count, foreseen, reverse):
         else:
             over = -min(1.0 / w, limit / speed) if speed > 0.0 else 0.0
             jx, jy, jz = over * tx, over * ty, over * tz
-        largest = max(largest, change(v, p, i, pair, IMPULSE_AT, jx, jy, jz) / (s * s))
+        largest = max(largest, change(v, p, i, pair, IMPULSE_AT, jx, jy, jz))
     return largest
 
 
@@ -155,17 +155,57 @@ def pins_share(v, p, i, column):
     return row[column] * (ax - bx) + row[column + 1] * (ay - by) + row[column + 2] * (az - bz)
 
 
+@kernel(inline=True)
+def kept_place(p, i, count):
+    """Number of touching pair i among those of the last kick, `count` if it did not touch then."""
+    a, b, last = p.touching[i, 0], p.touching[i, 1], p.last_rubs
+    if i < count and last[i, 0] == a and last[i, 1] == b:  # most lists stay
+        return i
+    for k in range(count):
+        if last[k, 0] == a and last[k, 1] == b:
+            return k
+    return count
+
+
+@kernel(allocates=False)
+def begin_with_last(v, s, p, count):
+    """Begin with the impulses of the last kick, as far as the pairs still bear them. False if there are none."""
+    kept = max(0, p.touching[p.touching.shape[0] - 1, 1])
+    for i in range(count):
+        k = kept_place(p, i, kept)
+        if k == kept or p.rubs[i, MOBILITY] == 0.0:
+            continue
+        pair, last = rubbing(p, i), p.last_rubs[k]
+        jx, jy, jz = along_surface(pair, last[2], last[3], last[4])
+        size, limit = math.sqrt(jx * jx + jy * jy + jz * jz), s * p.rubs[i, MOST]
+        part = limit / size if size > limit else 1.0
+        change(v, p, i, pair, IMPULSE_AT, part * jx, part * jy, part * jz)
+    return kept > 0
+
+
+@kernel(allocates=False)
+def keep_impulses(p, count):
+    """Keep the impulses for the next kick."""
+    for i in range(count):
+        row, last = p.rubs[i], p.last_rubs[i]
+        last[0], last[1] = p.touching[i, 0], p.touching[i, 1]
+        last[2], last[3], last[4] = row[IMPULSE_AT], row[IMPULSE_AT + 1], row[IMPULSE_AT + 2]
+    p.touching[p.touching.shape[0] - 1, 1] = count
+
+
 @kernel(allocates=False)
 def hold(x, v, t, s, p, foreseen):
     """Friction for a time s, last in a kick, which stops places that it can stop. Returns the work of pins [J].
 
     foreseen: of other places, the friction that `foresee` has set, for a kick that mirrors one without.
     """
-    count = note(x, v, p)
+    count, most = note(x, v, p)
     clear(p, count, IMPULSE_AT)
-    for sweep in range(SWEEPS):
-        if sweep_impulses(v, s, p, count, foreseen, sweep % 2 == 1) <= SETTLED * SETTLED:
+    sweeps = MORE_SWEEPS if begin_with_last(v, s, p, count) else SWEEPS
+    for sweep in range(sweeps):
+        if sweep_impulses(v, s, p, count, foreseen, sweep % 2 == 1) <= (SETTLED * s * most) ** 2:
             break
+    keep_impulses(p, count)
     work = 0.0
     if p.pins.shape[0] > 0:
         for i in range(count):

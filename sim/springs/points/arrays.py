@@ -85,8 +85,10 @@ class StepArrays(NamedTuple):
 class RubArrays(NamedTuple):
     """Extra kernel data of chains that touch themselves, see `sim.springs.forces.strand_friction`."""
 
-    touching: NDArray[np.int64]  # (most + 1, 2): pairs of links that touch; their number in [-1, 0], -1: no list yet
+    # (most + 1, 2): pairs of links that touch; in [-1] their number and that of the last kick, -1: no list yet
+    touching: NDArray[np.int64]
     rubs: NDArray[np.float64]  # (most, 13): their places and normals, and friction
+    last_rubs: NDArray[np.float64]  # (most, 5): those of the last kick: first points and impulse [N s]
 
 
 class CellArrays(NamedTuple):

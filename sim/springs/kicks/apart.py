@@ -72,7 +72,7 @@ def remember_chain(x, p, follows):
     remember(x, p)
 
 
-@kernel
+@kernel(allocates=False)
 def remember_cloth(x, p, follows):
     if p.thickness > 0.0:
         start_motion(x, p, follows)
@@ -245,7 +245,7 @@ def farthest_in_step(x, last, seen, n):
     return most
 
 
-@kernel
+@kernel(allocates=False)
 def may_links_meet(x, p):
     n, least = np.uint64(p.cols), least_distance(p)
     if 2.0 * math.sqrt(farthest_in_step(x, p.last, p.seen, n)) < p.nearest[0] - least:
@@ -255,7 +255,7 @@ def may_links_meet(x, p):
     return not 2.0 * (since + now) < p.nearest[0] - least
 
 
-@kernel
+@kernel(allocates=False)
 def may_cloth_meet(x, p):
     if p.thickness == 0.0:
         return False
@@ -313,7 +313,7 @@ def part_pairs(x, v, t, p, with_account, ledger):
     return kept
 
 
-@kernel
+@kernel(allocates=False)
 def keep_net_apart(x, v, t, p, with_account, ledger):
     return may_meet(x, p) and part_pairs(x, v, t, p, with_account, ledger)
 

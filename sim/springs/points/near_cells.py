@@ -447,7 +447,7 @@ def motion_since(x, p):
     return far, math.sqrt(down.max()) + math.sqrt(across.max())
 
 
-@kernel
+@kernel(allocates=False)
 def start_motion(x, p, follows):
     """Set the motion since the list was made, up to the start of a step: that up to the end of the last one, if x
     follows it and that is known."""
@@ -457,7 +457,7 @@ def start_motion(x, p, follows):
         p.moved[0], p.moved[1] = motion_since(x, p)
 
 
-@kernel
+@kernel(allocates=False)
 def set_closing(x, p):
     """Set p.closing to bounds of how much nearer pairs of each kind have come [m] since the list was made.
 

@@ -249,7 +249,7 @@ def farthest(x, seen, n):
     return most.max() if mx + my + mz - (mx + my + mz) == 0.0 else math.nan
 
 
-@kernel
+@kernel(allocates=False)
 def refresh_pairs(x, p):
     """Find the pairs again if a point has moved by half the skin; returns their number, 0 if p.stop cancels."""
     half = 0.5 * (reach_of(p) - p.thickness)
@@ -264,7 +264,7 @@ def refresh_pairs(x, p):
     return p.pairs[last, 0]
 
 
-@kernel
+@kernel(allocates=False)
 def pairs_at_hand(x, p):
     """Number of pairs in the list, which `refresh_pairs` has looked at with these x, if it has been called at all."""
     last = p.pairs.shape[0] - 1

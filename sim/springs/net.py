@@ -49,7 +49,7 @@ DAMPING_MODELS = ("isotropic", "axial")
 CONTACT_LAWS = ("clipped", "lab")
 CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
 GRID_COST = 4.0  # of a point with links in several directions, over that of a rope's
-CONTACT_COST = 300.0  # of a point of a net that touches itself
+CONTACT_COST = 2.0  # of a point of a net that touches itself, over another's; loops over many pairs check for a stop
 LEAST_BAND = 8  # least rows for a thread
 NEAR_CELLS = 32  # most pairs of edges, and of points and faces, of a cloth within reach for each particle, on average
 PAIRS = 24  # most pairs within reach for each particle or, of a chain, thickness of it, on average; more do not push
@@ -249,7 +249,8 @@ class Net(PointSystem[Run]):
     @property
     def evaluation_cost(self) -> float:
         """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
-        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_chain else GRID_COST)
+        touches = CONTACT_COST if self.thickness > 0.0 else 1.0
+        return self.x0[0].size * touches * (1.0 if self.is_chain else GRID_COST)
 
     @property
     def is_strand(self) -> bool:
@@ -319,8 +320,9 @@ class Net(PointSystem[Run]):
             view = view._replace(held=held, load=load, load_is=np.zeros_like(view.load_is))
         if self.thickness == 0.0:
             return view
-        pairs, seen, nearest = np.full_like(view.pairs, -1), np.zeros_like(view.seen), np.zeros_like(view.nearest)
-        view = view._replace(pairs=pairs, seen=seen, nearest=nearest)
+        pairs, seen, nearest = np.empty_like(view.pairs), np.zeros_like(view.seen), np.zeros_like(view.nearest)
+        pairs[-1] = -1
+        view = view._replace(pairs=pairs, seen=seen, nearest=nearest, looks=np.zeros_like(view.looks))
         if isinstance(view, GridArrays):
             return view
         view = view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
@@ -387,6 +389,7 @@ class Net(PointSystem[Run]):
             pairs=np.full((self.most_pairs + 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             nearest=np.zeros(1),
+            looks=np.zeros(1, np.int64),
         )
         if self.is_chain:
             return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12), *self._rub_arrays())
@@ -418,7 +421,8 @@ class Net(PointSystem[Run]):
         most = NEAR_CELLS * self.x0[0].size if self.thickness > 0.0 else 0
         near = np.empty((most + 1, 3), np.int64)
         near[-1] = -1, 0, 0
-        cells = CellArrays(near, np.empty(most), np.zeros(self.x0.size if most else 3), np.zeros(4), *np.zeros((3, 3)))
+        listed, joined = np.zeros((2, self.x0.size if most else 3))
+        cells = CellArrays(near, np.empty(most), listed, joined, np.zeros(4), *np.zeros((3, 3)))
         return cells._asdict()
 
 

@@ -180,8 +180,8 @@ def run_net(
         run = stepped(net, state, record, t, h, with_account, progress)
     if run.left_out > 0:
         text = (
-            f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
-            "particle were within reach"
+            f"self-contact left out up to {run.left_out} particles: more than {PAIRS} pairs a particle were within "
+            "reach"
         )
         warnings.warn(text, ApproximationWarning, stacklevel=3)
     return run

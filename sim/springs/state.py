@@ -14,11 +14,13 @@ from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
 from sim.springs.points.acceleration import set_acceleration
+from sim.springs.points.arrays import LISTS
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
+LIST_SIZES = ("rows", "cols", "thickness", "row_spacing", "col_spacing")  # of a view, that its lists depend on
 
 
 @dataclasses.dataclass(eq=False)
@@ -40,6 +42,7 @@ class State:
     # Steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled; steps in which
     # strands, or parts of a cloth, that touch were slowed down to keep them apart.
     unsettled: int = 0
+    lists: dict[str, NDArray[Any]] | None = dataclasses.field(default=None, repr=False)  # see `view_with_lists`
 
     @classmethod
     def at_rest(cls, system: PointSystem) -> "State":
@@ -56,7 +59,7 @@ class State:
         return cls(np.array(x, dtype=np.float64, order="C"), np.zeros(x.shape))
 
     def copy(self) -> "State":
-        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
+        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy(), lists=None)
 
     @property
     def is_bounded(self) -> bool:
@@ -101,6 +104,24 @@ def view_of(system: PointSystem, h: float, driven: Driven) -> Any:
             shape = getattr(array, "shape", type(array))
             raise argument_error(f"driven: {name}", shape, f"an array of float64 of shape {own.shape}")
     return p._replace(**{name: np.ascontiguousarray(array) for name, array in driven.items()})
+
+
+def view_with_lists(p: Any, state: State) -> Any:
+    """`p` with the lists of what is near that the last call of `advance` made for this state.
+
+    Kernels make them anew if positions have changed. Those for another thickness or spacing are not used.
+    """
+    lists, state.lists = state.lists, None  # a cancelled solve leaves incomplete lists
+    if lists is None or any(lists[name] != getattr(p, name) for name in LIST_SIZES):
+        return p
+    p = p._replace(**{name: lists[name] for name in LISTS if name in lists})
+    if "moved" in lists:
+        p.moved[2:] = np.inf
+    return p
+
+
+def lists_of(p: Any) -> dict[str, Any]:
+    return {name: getattr(p, name) for name in (*LISTS, *LIST_SIZES) if hasattr(p, name)}
 
 
 def touches_itself(system: PointSystem) -> bool:
@@ -178,6 +199,8 @@ def advance(
         set_threads(system.bands)
     most = max(1, int(POINT_EVALS / (system.evaluation_cost * integrator.evals)))
     touches = touches_itself(system)
+    if touches:
+        p = view_with_lists(p, state)
     may_end_within_a_step = integrator.implicit or touches
     for done in range(0, steps, most):
         count = min(most, steps - done)
@@ -196,6 +219,8 @@ def advance(
         state.dissipated = float(ledger[0])
         state.work = float(ledger[1])
         state.unsettled = int(ledger[2])
+    if touches:
+        state.lists = lists_of(p)
 
 
 def energy(system: PointSystem, state: State) -> Energy:

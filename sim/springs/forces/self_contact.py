@@ -12,7 +12,7 @@ from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import WIDE_NETS, Force
 from sim.springs.points.each_link import TINY
-from sim.springs.points.near_pairs import refresh_pairs
+from sim.springs.points.near_pairs import pairs_at_hand, refresh_pairs
 from sim.springs.points.order import in_turn
 
 
@@ -48,9 +48,12 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel(allocates=False)
 def damp(x, v, t, s, p, reverse):
-    """Damping of touching pairs alone for a time s [s]: exact, except that separating pairs get at most their push."""
+    """Damping of touching pairs alone for a time s [s]: exact, except that separating pairs get at most their push.
+
+    A kick comes after the accelerations at its x, so that the list of pairs is that of x.
+    """
     n = p.rows * p.cols
-    count = refresh_pairs(x, p)
+    count = pairs_at_hand(x, p)
     for turn in range(count):
         pair = in_turn(turn, count, reverse)
         i, j = p.pairs[pair, 0], p.pairs[pair, 1]

@@ -18,20 +18,28 @@ from typing import Any
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import kinetic_energy, stored_energies
 from sim.springs.points.arrays import by_net
 from sim.springs.points.near_cells import (
     find_near,
+    find_neighbours,
     four_in_list,
-    motion_since,
+    has_far,
+    has_neighbours,
     note_left_out,
     set_closing,
-    spacing_of,
     start_motion,
-    stays_beyond,
+    stays_clear,
 )
-from sim.springs.points.near_pairs import farthest, find_pairs_within, mean_shift, reach_of, refresh_pairs
+from sim.springs.points.near_pairs import (
+    farthest,
+    find_pairs_within,
+    mean_shift,
+    reach_of,
+    refresh_pairs,
+    spacing_of,
+)
 from sim.springs.points.places import (
     Four,
     NearestPlaces,
@@ -156,15 +164,16 @@ def pairs_of_chain(x, p):
 def pairs_of_cloth(x, p):
     last, least = p.near.shape[0] - 1, least_distance(p)
     set_closing(x, p)
-    if p.near[last, 0] < 0 or not stays_beyond(p, p.reach, least):
-        far, _ = motion_since(x, p.last, p.rows, p.cols)
-        if not far < math.inf:
-            return 0, True
-        if not find_near(p.last, x, p, least):
-            if find_near(p.last, p.last, p, least):
-                return 0, False
-            note_left_out(p)
-        set_closing(x, p)
+    has_list = p.near[last, 0] >= 0 and has_far(p, least)
+    if has_list and has_neighbours(p, least):
+        return p.near[last, 0], True
+    if not math.sqrt(farthest(x, p.last, np.uint64(p.rows * p.cols))) < math.inf:
+        return 0, True
+    if not (has_list and find_neighbours(p.last, x, p)) and not find_near(p.last, x, p, least):
+        if find_near(p.last, p.last, p, least):
+            return 0, False
+        note_left_out(p)
+    set_closing(x, p)
     return p.near[last, 0], True
 
 
@@ -253,7 +262,7 @@ def may_cloth_meet(x, p):
     if p.near[p.near.shape[0] - 1, 0] < 0:
         return True
     set_closing(x, p)
-    return not stays_beyond(p, p.clear, least_distance(p))
+    return not stays_clear(p, least_distance(p))
 
 
 # False if no pair can come too near, by its distance when the list was made and the motion since.
@@ -271,6 +280,8 @@ def part_pairs(x, v, t, p, with_account, ledger):
     """`keep_apart` of a step in which pairs may meet."""
     kept, slowed, before = False, False, 0.0
     for sweep in range(SWEEPS + HOLDS + 1):
+        if is_stopped(p.stop):
+            break
         count, has_room = pairs_of_step(x, p)
         met = not has_room
         for q in range(count):

@@ -73,6 +73,7 @@ class TouchArrays(NamedTuple):
     pairs: NDArray[np.int64]
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     nearest: NDArray[np.float64]  # (1,) the least distance [m] of any pair then, 0 if it is not known
+    looks: NDArray[np.int64]  # (1,) number of pairs that loops came to since the last check of p.stop
 
 
 class StepArrays(NamedTuple):
@@ -94,14 +95,19 @@ class RubArrays(NamedTuple):
 class CellArrays(NamedTuple):
     """Extra kernel data of cloths that touch themselves, see `sim.springs.points.near_cells`."""
 
-    # (most + 1, 3): pairs that may meet, and the kind of each; their number in [-1, 0], -1: there is no list yet
+    # (most + 1, 3): pairs that may meet, and the kind of each; their number in [-1, 0], -1: there is no list yet, and
+    # that of FAR ones, which come first, in [-1, 1]
     near: NDArray[np.int64]
     near_gaps: NDArray[np.float64]  # (most,) lower bound of the distance [m] of each when the list was made
     listed: NDArray[np.float64]  # (3 rows cols,) positions at the end of the step in which the list was made
-    moved: NDArray[np.float64]  # (4,) `motion_since` at the start of the step and at its end
+    joined: NDArray[np.float64]  # the same for the list of neighbours, which is made more often
+    moved: NDArray[np.float64]  # (4,) `motion_since` at the start of the step and at its end, inf: not known
     reach: NDArray[np.float64]  # (3,) distance [m] within which pairs of each kind are listed
     clear: NDArray[np.float64]  # (3,) lower bound of the distance [m] of all then
     closing: NDArray[np.float64]  # (3,) [m], see `set_closing`
+
+
+LISTS = ("pairs", "seen", "nearest", "looks", *CellArrays._fields)  # lists of what is near, with the data for renewing
 
 
 class WideArrays(NamedTuple):

@@ -1,6 +1,6 @@
 """The list of a cloth's edges, and of its points and faces, that may meet: `sim.springs.kicks.apart` looks at these.
 
-Blocks of cells are looked for by the spatial hash of `near_pairs`, with the whole straight motion of the step in which
+Blocks of cells are found by the spatial hash of `near_balls`, with the whole straight motion of the step in which
 the list is made; blocks that are near to each other are compared cell by cell. The list is kept while the cloth moves
 little. What lies on different parts of the cloth comes nearer by at most twice the motion of a point about the mean of
 all. Neighbours come nearer by at most what the links between them turn and stretch, so that a cloth that flies or
@@ -22,25 +22,22 @@ from sim.springs.points.cells import (
     point_and_face,
     two_edges,
 )
-from sim.springs.points.each_link import TINY
-from sim.springs.points.near_pairs import bucket, cell, mean_shift, sort_into_buckets
+from sim.springs.points.near_balls import balls_meet, balls_near, sort_balls
+from sim.springs.points.near_pairs import farthest, mean_shift, spacing_of
 from sim.springs.points.places import closing_bound, places_at
+from sim.springs.points.windows import are_beside, block_at, blocks_in, region, window, window_place
 
 # Kinds of pairs: on different parts of the cloth; of cells with a common point; of cells with one cell between them.
 FAR, JOINED, NEXT = 0, 1, 2
 NEIGHBOURS = 2  # rows and columns apart, within which cells are JOINED or NEXT
-BLOCK = 4  # rows and columns of cells in a block
+SMALL, LARGE = 3, 4  # rows and columns of particles in a window of JOINED cells, and of NEXT ones
 # Reaches of the search in parts of the spacing: of FAR pairs beyond the least distance, and of neighbours. Of a flat
 # cloth JOINED pairs are at least 0.71 of it away from each other, and NEXT ones all of it.
-FAR_SKIN, JOINED_REACH, NEXT_REACH = 1.0, 0.6, 0.8
+FAR_SKIN, JOINED_REACH, NEXT_REACH = 1.0, 0.42, 0.6
+NEARLY_FLAT = 0.6  # of the spacing: distance of JOINED pairs beyond which a large window's bound is taken
 SHRINK = 0.3  # of what is beyond the least distance, where the list is full
 SHRINKS = 3
 TURNED = 0.1  # of the reach: motion in a step beyond which the direction across that motion may part two things
-
-
-@kernel(inline=True)
-def spacing_of(p):
-    return min(p.row_spacing, p.col_spacing)
 
 
 @kernel(inline=True)
@@ -193,75 +190,42 @@ def list_cells(x, y, p, a, b, kind, reach, count):
 
 
 @kernel(inline=True)
-def squared_aside(dx, dy, dz, nx, ny, nz):
-    """Squared length of the part of a vector across a unit vector."""
-    along = dx * nx + dy * ny + dz * nz
-    return dx * dx + dy * dy + dz * dz - along * along
-
-
-@kernel(noalias=True, inline=True)
-def clearance(x, y, n, cols, first, size, between):
-    """Lower bound of the distance [m] of things in a square window, `size` particles a side, from particle `first` on.
-
-    E and F are the mean ways along a row and a column. Seen along their normal, the particles are at most `off` from a
-    grid of these. So two places are as far apart as on that grid less 2 `off`: at least `between`, their distance on a
-    grid of unit squares, times the least singular value of (E, F). A motion from x to y takes twice that of a particle.
-    """
-    middle = 0.5 * (size - 1.0)
-    across = mx = my = mz = ex = ey = ez = fx = fy = fz = ux = uy = uz = 0.0
-    for r in range(size):
-        for s in range(size):
-            k, c, d = first + np.uint64(r) * cols + np.uint64(s), s - middle, r - middle
-            px, py, pz = x[k], x[n + k], x[n + n + k]
-            mx, my, mz = mx + px, my + py, mz + pz
-            ux, uy, uz = ux + y[k] - px, uy + y[n + k] - py, uz + y[n + n + k] - pz
-            ex, ey, ez = ex + c * px, ey + c * py, ez + c * pz
-            fx, fy, fz = fx + d * px, fy + d * py, fz + d * pz
-            across += c * c
-    part = 1.0 / (size * size)
-    mx, my, mz, ux, uy, uz = part * mx, part * my, part * mz, part * ux, part * uy, part * uz
-    ex, ey, ez, fx, fy, fz = ex / across, ey / across, ez / across, fx / across, fy / across, fz / across
-    nx, ny, nz = ey * fz - ez * fy, ez * fx - ex * fz, ex * fy - ey * fx
-    length = math.sqrt(nx * nx + ny * ny + nz * nz) + TINY
-    nx, ny, nz = nx / length, ny / length, nz / length
-    off = moved = 0.0
-    for r in range(size):
-        for s in range(size):
-            k, c, d = first + np.uint64(r) * cols + np.uint64(s), s - middle, r - middle
-            px, py, pz = x[k], x[n + k], x[n + n + k]
-            dx, dy, dz = px - mx - c * ex - d * fx, py - my - c * ey - d * fy, pz - mz - c * ez - d * fz
-            off = max(off, squared_aside(dx, dy, dz, nx, ny, nz))
-            dx, dy, dz = y[k] - px - ux, y[n + k] - py - uy, y[n + n + k] - pz - uz
-            moved = max(moved, squared_aside(dx, dy, dz, nx, ny, nz))
-    ee, ff, ef = ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz, ex * fx + ey * fy + ez * fz
-    least = 0.5 * (ee + ff) - math.sqrt(0.25 * (ee - ff) ** 2 + ef * ef)
-    return between * math.sqrt(max(0.0, least)) - 2.0 * (math.sqrt(off) + math.sqrt(moved))
-
-
-@kernel(inline=True)
-def window_place(i, rows, size):
-    """The row of the first particle of a window that holds the cells from row i on, as far as there are any."""
-    return max(0, min(i, rows - size))
-
-
-@kernel(inline=True)
-def is_flat(windows, p, i, j, size, kind):
-    """True if neither window with the neighbours of a cell, after it and beside it, lets them come within reach."""
-    first, back = window_place(i, p.rows, size), window_place(j - size + 2, p.cols, size)
-    here = windows[first * p.cols + window_place(j, p.cols, size)]
-    there = windows[first * p.cols + back]
-    least = min(here, there)
-    if not least >= p.reach[kind]:
+def is_flat(p, width, off, kind, reach):
+    """True if a window lets no neighbours of a kind come within `reach` [m]."""
+    least = (math.sqrt(0.5) if kind == JOINED else 1.0) * width - 2.0 * off
+    if not least >= reach:
         return False
     p.clear[kind] = min(p.clear[kind], least)
     return True
 
 
 @kernel(allocates=False)
-def list_neighbours(x, y, p, i, j, joined, nexts, count):
-    """List the pairs of a cell and of the neighbours after it. joined, nexts: `clearance` of windows."""
+def is_small_window_flat(x, y, p, i, j):
+    """True if the window of JOINED cells from cell (i, j) on lets none come within reach."""
+    if min(p.rows, p.cols) < SMALL:
+        return False
+    first = window_place(i, p.rows, SMALL) * p.cols + window_place(j, p.cols, SMALL)
+    width, off = window(x, y, np.uint64(p.rows * p.cols), np.uint64(p.cols), np.uint64(first), SMALL)
+    return is_flat(p, width, off, JOINED, p.reach[JOINED])
+
+
+@kernel(allocates=False)
+def list_neighbours(x, y, p, i, j, windows, count):
+    """List the pairs of a cell and of the neighbours after it, unless the windows after it and beside it are flat.
+
+    windows: width and off of each, (2, particles).
+    """
     a, n = cell_at(p, i, j), p.rows * p.cols
-    flat, wide = is_flat(joined, p, i, j, 3, JOINED), is_flat(nexts, p, i, j, 4, NEXT)
+    flat = wide = False
+    if min(p.rows, p.cols) >= LARGE:
+        first = window_place(i, p.rows, LARGE) * p.cols
+        here, there = first + window_place(j, p.cols, LARGE), first + window_place(j - LARGE + 2, p.cols, LARGE)
+        width, off = min(windows[0, here], windows[0, there]), max(windows[1, here], windows[1, there])
+        # A small window bounds a bent cloth's distances better.
+        flat = is_flat(p, width, off, JOINED, max(p.reach[JOINED], NEARLY_FLAT * spacing_of(p)))
+        wide = is_flat(p, width, off, NEXT, p.reach[NEXT])
+    if not flat:
+        flat = is_small_window_flat(x, y, p, i, j) and is_small_window_flat(x, y, p, i, j - SMALL + 2)
     if flat and wide:
         return count
     for down in range(min(NEIGHBOURS, p.rows - 1 - i) + 1):
@@ -279,28 +243,16 @@ def list_neighbours(x, y, p, i, j, joined, nexts, count):
     return count
 
 
-@kernel(noalias=True, inline=True)
-def set_windows(x, y, rows, cols, windows, size, between):
-    """Set `clearance` at the first particle of each window; 0 if the cloth is too small to have any."""
-    n, width = np.uint64(rows * cols), np.uint64(cols)
-    for k in range(n):
-        windows[k] = 0.0
-    if cols < size:
+@kernel(noalias=True, allocates=False)
+def set_windows(x, y, rows, cols, width, off):
+    """Set width and off (particles,) of each `window` of NEXT cells at its first particle."""
+    n, across = np.uint64(rows * cols), np.uint64(cols)
+    if cols < LARGE:
         return
-    for i in range(rows - size + 1):
-        for j in range(np.uint64(cols - size + 1)):
-            first = np.uint64(i) * width + j
-            windows[first] = clearance(x, y, n, width, first, size, between)
-
-
-@kernel(noalias=True, allocates=False)
-def set_joined_windows(x, y, p, windows):
-    set_windows(x, y, p.rows, p.cols, windows, 3, math.sqrt(0.5))
-
-
-@kernel(noalias=True, allocates=False)
-def set_next_windows(x, y, p, windows):
-    set_windows(x, y, p.rows, p.cols, windows, 4, 1.0)
+    for i in range(rows - LARGE + 1):
+        for j in range(np.uint64(cols - LARGE + 1)):
+            first = np.uint64(i) * across + j
+            width[first], off[first] = window(x, y, n, across, first, LARGE)
 
 
 @kernel(allocates=False)
@@ -325,18 +277,11 @@ def set_balls(x, y, p, balls):
             balls[3, k] = math.sqrt(square)
 
 
-@kernel(inline=True)
-def blocks_in(count):
-    return (count + BLOCK - 1) // BLOCK
-
-
 @kernel(allocates=False)
 def set_block_balls(p, balls, blocks):
-    """Set middle and radius (4, blocks) [m] of a ball about the balls of each block; returns the largest radius."""
-    most, across = 0.0, blocks_in(p.cols)
+    """Set middle and radius (4, blocks) [m] of a ball about the balls of each block."""
     for block in range(blocks.shape[1]):
-        top, left = BLOCK * (block // across), BLOCK * (block % across)
-        bottom, right = min(top + BLOCK, p.rows), min(left + BLOCK, p.cols)
+        top, bottom, left, right = block_at(p, block)
         mx = my = mz = radius = 0.0
         part = 1.0 / ((bottom - top) * (right - left))
         for i in range(top, bottom):
@@ -347,30 +292,21 @@ def set_block_balls(p, balls, blocks):
                 dx, dy, dz = balls[0, a] - mx, balls[1, a] - my, balls[2, a] - mz
                 radius = max(radius, balls[3, a] + math.sqrt(dx * dx + dy * dy + dz * dz))
         blocks[0, block], blocks[1, block], blocks[2, block], blocks[3, block] = mx, my, mz, radius
-        most = max(most, radius)
-    return most
-
-
-@kernel(inline=True)
-def balls_meet(first, a, second, b, reach):
-    dx, dy, dz = second[0, b] - first[0, a], second[1, b] - first[1, a], second[2, b] - first[2, a]
-    most = first[3, a] + second[3, b] + reach
-    return dx * dx + dy * dy + dz * dz < most * most
 
 
 @kernel(allocates=False)
 def list_blocks(x, y, p, first, second, balls, blocks, reach, count):
     """List the pairs of the cells of two blocks that are no neighbours."""
-    across, n = blocks_in(p.cols), p.rows * p.cols
-    top, left = BLOCK * (first // across), BLOCK * (first % across)
-    low, near = BLOCK * (second // across), BLOCK * (second % across)
-    for i in range(top, min(top + BLOCK, p.rows)):
-        for j in range(left, min(left + BLOCK, p.cols)):
+    n = p.rows * p.cols
+    top, bottom, left, right = block_at(p, first)
+    low, high, near, far = block_at(p, second)
+    for i in range(top, bottom):
+        for j in range(left, right):
             a = i * p.cols + j
             if not balls_meet(balls, a, blocks, second, reach):
                 continue
-            for k in range(low, min(low + BLOCK, p.rows)):
-                for m in range(near, min(near + BLOCK, p.cols)):
+            for k in range(low, high):
+                for m in range(near, far):
                     b = k * p.cols + m
                     if (first == second and b <= a) or not balls_meet(balls, a, balls, b, reach):
                         continue
@@ -383,61 +319,68 @@ def list_blocks(x, y, p, first, second, balls, blocks, reach, count):
 
 
 @kernel
-def fill_list(x, y, p, reach, joined_reach, next_reach):
-    """Fill p.near with the pairs that come nearer than the reach [m] of their kind in the straight motion from x to y.
+def fill_neighbours(x, y, p, joined_reach, next_reach):
+    """Put the JOINED and NEXT pairs that come nearer than these [m] in the straight motion from x to y after the FAR
+    ones of p.near. Returns and sets what `fill_far` does."""
+    n, last = p.rows * p.cols, p.near.shape[0] - 1
+    p.reach[JOINED], p.reach[NEXT] = joined_reach, next_reach
+    p.clear[JOINED] = p.clear[NEXT] = math.inf
+    count = p.near[last, 1]
+    windows = np.empty((2, n))
+    set_windows(x, y, p.rows, p.cols, windows[0], windows[1])
+    for i in range(p.rows):
+        if is_stopped(p.stop):
+            p.near[last, 0] = p.near[last, 1] = 0
+            return True
+        for j in range(p.cols):
+            count = list_neighbours(x, y, p, i, j, windows, count)
+    p.near[last, 0] = min(count, last)
+    for j in range(3 * n):
+        p.joined[j] = y[j]
+    return count <= last
+
+
+@kernel
+def fill_far(x, y, p, reach):
+    """Fill p.near with the FAR pairs that come nearer than `reach` [m] in the straight motion from x to y.
 
     Returns False if the list was full.
 
-    Sets p.clear to a lower bound of the distance of all pairs of each kind. No pairs if p.stop cancels.
+    Sets p.clear to a lower bound of the distance of all such pairs. No pairs if p.stop cancels.
     """
-    n, last = p.rows * p.cols, p.near.shape[0] - 1
-    p.reach[FAR], p.reach[JOINED], p.reach[NEXT] = reach, joined_reach, next_reach
-    p.clear[FAR], p.clear[JOINED], p.clear[NEXT] = reach, math.inf, math.inf
-    count = 0
-    joined, nexts = np.empty(n), np.empty(n)
-    set_joined_windows(x, y, p, joined)
-    set_next_windows(x, y, p, nexts)
-    for i in range(p.rows):
-        if is_stopped(p.stop):
-            p.near[last, 0] = 0
-            return True
-        for j in range(p.cols):
-            count = list_neighbours(x, y, p, i, j, joined, nexts, count)
+    n, last, count = p.rows * p.cols, p.near.shape[0] - 1, 0
+    p.reach[FAR] = p.clear[FAR] = reach
     balls, blocks = np.empty((4, n)), np.empty((4, blocks_in(p.rows) * blocks_in(p.cols)))
     set_balls(x, y, p, balls)
-    inverse = 1.0 / (2.0 * set_block_balls(p, balls, blocks) + reach)
-    mask = 1
-    while mask < blocks.shape[1]:
-        mask *= 2
-    mask -= 1
-    where, order = np.empty(blocks.shape[1], np.int64), np.empty(blocks.shape[1], np.int64)
-    for a in range(blocks.shape[1]):
-        cx, cy, cz = cell(blocks[0, a], inverse), cell(blocks[1, a], inverse), cell(blocks[2, a], inverse)
-        where[a] = bucket(cx, cy, cz, mask)
-    starts = sort_into_buckets(where, order, mask)
+    set_block_balls(p, balls, blocks)
+    buckets, beside = sort_balls(blocks, reach), np.empty(blocks.shape[1], np.int64)
     for a in range(blocks.shape[1]):
         if count > last:
             break
         if is_stopped(p.stop):
-            p.near[last, 0] = 0
+            p.near[last, 0] = p.near[last, 1] = 0
             return True
-        ca, cb, cc = cell(blocks[0, a], inverse), cell(blocks[1, a], inverse), cell(blocks[2, a], inverse)
-        for near in range(27):
-            cx, cy, cz = ca + near // 9 - 1, cb + near // 3 % 3 - 1, cc + near % 3 - 1
-            q = bucket(cx, cy, cz, mask)
-            for s in range(starts[q + 1], starts[q + 2] if q < mask else blocks.shape[1]):
-                b = order[s]
-                if b < a or not balls_meet(blocks, a, blocks, b, reach):
-                    continue
-                # Two cells of the 27 may share a bucket: take the pair from the one that b is in.
-                if cell(blocks[0, b], inverse) != cx or cell(blocks[1, b], inverse) != cy:
-                    continue
-                if cell(blocks[2, b], inverse) == cz:
-                    count = list_blocks(x, y, p, a, b, balls, blocks, reach, count)
-    p.near[last, 0] = min(count, last)
+        width, off = region(x, y, p, a)
+        is_flat = NEIGHBOURS * width - 2.0 * off >= reach
+        for s in range(balls_near(blocks, buckets, a, reach, beside)):
+            if not (is_flat and are_beside(p, a, beside[s])):
+                count = list_blocks(x, y, p, a, beside[s], balls, blocks, reach, count)
+    p.near[last, 0] = p.near[last, 1] = min(count, last)
     for j in range(3 * n):
         p.listed[j] = y[j]
     return count <= last
+
+
+@kernel
+def about_mean(x, y, p):
+    """y (3 points,) without the motion from x that all points share, as it brings nothing together."""
+    n, o = p.rows * p.cols, np.uint64(p.rows * p.cols)
+    seen = np.empty(3 * n)
+    for e in range(3):
+        shift = mean_shift(y, x, np.uint64(e) * o, o)
+        for j in range(n):
+            seen[e * n + j] = y[e * n + j] - shift
+    return seen
 
 
 @kernel
@@ -446,21 +389,22 @@ def find_near(x, y, p, least):
 
     least: distance [m] below which everything has to be listed.
     """
-    n, o = p.rows * p.cols, np.uint64(p.rows * p.cols)
-    seen = np.empty(3 * n)
-    # The motion that all share brings nothing together.
-    for e in range(3):
-        shift = mean_shift(y, x, np.uint64(e) * o, o)
-        for j in range(n):
-            seen[e * n + j] = y[e * n + j] - shift
+    seen, spacing, part = about_mean(x, y, p), spacing_of(p), 1.0
     p.moved[0] = p.moved[1] = 0.0
-    spacing, part = spacing_of(p), 1.0
     far, joined, nexts = FAR_SKIN * spacing, JOINED_REACH * spacing - least, NEXT_REACH * spacing - least
     for _ in range(SHRINKS):
-        if fill_list(x, seen, p, least + part * far, least + part * joined, least + part * nexts):
+        has_room = fill_far(x, seen, p, least + part * far)
+        if has_room and fill_neighbours(x, seen, p, least + part * joined, least + part * nexts):
             return True
         part *= SHRINK
     return False
+
+
+@kernel
+def find_neighbours(x, y, p):
+    """Make the list of neighbours anew, with the same reach; returns False if there is no room for all in it."""
+    p.moved[1] = 0.0
+    return fill_neighbours(x, about_mean(x, y, p), p, p.reach[JOINED], p.reach[NEXT])
 
 
 @kernel
@@ -471,44 +415,46 @@ def note_left_out(p):
 
 
 @kernel(noalias=True, inline=True)
-def most_changed(x, listed, first, gap, count, n):
-    """Largest squared change, since the list was made, of the way from each of `count` particles to one `gap` on."""
-    most = 0.0
+def add_change(x, listed, o, gap, count, n, most):
+    """Raise `most` (count,) to the squared changes of the ways from as many particles, from o on, to those `gap` on."""
     for q in range(count):
-        j = first + q
+        j = o + q
         k = j + gap
         dx = (x[k] - listed[k]) - (x[j] - listed[j])
         dy = (x[n + k] - listed[n + k]) - (x[n + j] - listed[n + j])
         dz = (x[n + n + k] - listed[n + n + k]) - (x[n + n + j] - listed[n + n + j])
-        most = max(most, dx * dx + dy * dy + dz * dz)
-    return most
+        change = dx * dx + dy * dy + dz * dz
+        most[q] = change if change > most[q] else most[q]
 
 
 @kernel(noalias=True, allocates=False)
-def motion_since(x, listed, rows, cols):
-    """Largest motion [m] of a particle about the mean since the list was made, and largest relative motion along a
-    column and along a row from one to the next."""
+def add_changes(x, listed, rows, cols, down, across):
     n, one, width = np.uint64(rows * cols), np.uint64(1), np.uint64(cols)
-    mx, my = mean_shift(x, listed, np.uint64(0), n), mean_shift(x, listed, n, n)
-    mz = mean_shift(x, listed, n + n, n)
-    most = across = 0.0
-    for j in range(n):
-        dx, dy, dz = x[j] - listed[j] - mx, x[n + j] - listed[n + j] - my, x[n + n + j] - listed[n + n + j] - mz
-        most = max(most, dx * dx + dy * dy + dz * dz)
-    down = most_changed(x, listed, np.uint64(0), width, n - width, n)
     for i in range(rows):
-        across = max(across, most_changed(x, listed, np.uint64(i) * width, one, width - one, n))
-    return math.sqrt(most), math.sqrt(down) + math.sqrt(across)
+        o = np.uint64(i) * width
+        add_change(x, listed, o, one, width - one, n, across)
+        if i + 1 < rows:
+            add_change(x, listed, o, width, width, n, down)
+
+
+@kernel
+def motion_since(x, p):
+    """Largest motion [m] of a particle about the mean since the list was made, NaN if any is, and largest relative
+    motion along a column and along a row, from one to the next, since that of neighbours was made."""
+    down, across = np.zeros(p.cols), np.zeros(p.cols)
+    add_changes(x, p.joined, p.rows, p.cols, down, across)
+    far = math.sqrt(farthest(x, p.listed, np.uint64(p.rows * p.cols)))
+    return far, math.sqrt(down.max()) + math.sqrt(across.max())
 
 
 @kernel(allocates=False)
 def start_motion(x, p, follows):
     """Set the motion since the list was made, up to the start of a step: that up to the end of the last one, if x
-    follows it."""
-    if follows and p.pins.shape[0] == 0:
+    follows it and that is known."""
+    if follows and p.pins.shape[0] == 0 and p.moved[2] < math.inf:
         p.moved[0], p.moved[1] = p.moved[2], p.moved[3]
     else:
-        p.moved[0], p.moved[1] = motion_since(x, p.listed, p.rows, p.cols)
+        p.moved[0], p.moved[1] = motion_since(x, p)
 
 
 @kernel(allocates=False)
@@ -517,13 +463,26 @@ def set_closing(x, p):
 
     x: the end of the step.
     """
-    p.moved[2], p.moved[3] = motion_since(x, p.listed, p.rows, p.cols)
+    p.moved[2], p.moved[3] = motion_since(x, p)
     far, near = max(p.moved[0], p.moved[2]), max(p.moved[1], p.moved[3])
     p.closing[FAR], p.closing[JOINED], p.closing[NEXT] = 2.0 * far, 2.0 * near, 3.0 * near
 
 
 @kernel(inline=True)
-def stays_beyond(p, bounds, least):
-    """True if no pair that was beyond these bounds [m] has come nearer than `least`; False if a motion is NaN."""
-    far, joined = p.closing[FAR] <= bounds[FAR] - least, p.closing[JOINED] <= bounds[JOINED] - least
-    return far and joined and p.closing[NEXT] <= bounds[NEXT] - least
+def has_far(p, least):
+    """True if no FAR pair that is not in the list can have come nearer than `least` [m]; False if a motion is NaN."""
+    return p.closing[FAR] <= max(p.reach[FAR], p.clear[FAR]) - least
+
+
+@kernel(inline=True)
+def has_neighbours(p, least):
+    """As `has_far`, for JOINED and NEXT pairs."""
+    joined, nexts = max(p.reach[JOINED], p.clear[JOINED]), max(p.reach[NEXT], p.clear[NEXT])
+    return p.closing[JOINED] <= joined - least and p.closing[NEXT] <= nexts - least
+
+
+@kernel(inline=True)
+def stays_clear(p, least):
+    """True if no pair at all can have come nearer than `least` [m]; False if a motion is NaN."""
+    far, joined = p.closing[FAR] <= p.clear[FAR] - least, p.closing[JOINED] <= p.clear[JOINED] - least
+    return far and joined and p.closing[NEXT] <= p.clear[NEXT] - least

@@ -13,36 +13,80 @@ from typing import Any
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.points.arrays import by_net
+from sim.springs.points.arrays import by_net, span
 from sim.springs.points.link_pairs import pair_at
-from sim.springs.points.link_places import longest
+from sim.springs.points.near_balls import balls_near, sort_balls
+from sim.springs.points.windows import are_beside, block_at, blocks_in, region, row_of
 
 UNASKED = 64  # particles or links between two looks at whether the search is to end
+LOOKS_UNASKED = 100_000  # pairs between two checks for a stop of the solve
 SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
+# Of particles more, as far as a flat net has only neighbours within WIDEST spacings.
+WIDE_SKIN, WIDEST = 1.5, 2.0
 NEIGHBOURS = 2  # rows and columns apart, within which a pair is held by links and never pushes
+LANES = 32  # of a maximum that is taken side by side
 
 
 @kernel(inline=True)
-def reach_of(p):
-    """Distance [m] within which pairs are looked for."""
-    return (1.0 + SKIN) * p.thickness
+def spacing_of(p):
+    return min(p.row_spacing, p.col_spacing)
+
+
+@kernel
+def balls_of_particles(x, p):
+    """Middle and radius [m] of a ball about each block of particles, (4, blocks)."""
+    n, balls = p.rows * p.cols, np.empty((4, blocks_in(p.rows) * blocks_in(p.cols)))
+    for block in range(balls.shape[1]):
+        top, bottom, left, right = block_at(p, block)
+        part = 1.0 / ((bottom - top) * (right - left))
+        mx = my = mz = square = 0.0
+        for i in range(top, bottom):
+            for j in range(i * p.cols + left, i * p.cols + right):
+                mx, my, mz = mx + part * x[j], my + part * x[n + j], mz + part * x[2 * n + j]
+        for i in range(top, bottom):
+            for j in range(i * p.cols + left, i * p.cols + right):
+                dx, dy, dz = x[j] - mx, x[n + j] - my, x[2 * n + j] - mz
+                square = max(square, dx * dx + dy * dy + dz * dz)
+        balls[0, block], balls[1, block], balls[2, block], balls[3, block] = mx, my, mz, math.sqrt(square)
+    return balls
+
+
+@kernel
+def without_flat_blocks(x, p, block, beside, near, reach):
+    width, off = region(x, x, p, block)
+    if not (NEIGHBOURS + 1) * width - 2.0 * off >= reach:
+        return near
+    count = 0
+    for s in range(near):
+        if not are_beside(p, block, beside[s]):
+            beside[count] = beside[s]
+            count += 1
+    return count
+
+
+@kernel
+def balls_of_links(x, p):
+    """Middle of each link and half its length [m], (4, links)."""
+    n, balls = p.cols, np.empty((4, p.cols - 1))
+    for j in range(n - 1):
+        for e in range(3):
+            balls[e, j] = 0.5 * (x[e * n + j] + x[e * n + j + 1])
+        dx, dy, dz = span(x, n, j, j + 1)
+        balls[3, j] = 0.5 * math.sqrt(dx * dx + dy * dy + dz * dz)
+    return balls
 
 
 @kernel(inline=True)
-def particle_place(x, p, i):
-    n = p.rows * p.cols
-    return x[i], x[n + i], x[2 * n + i]
-
-
-@kernel(inline=True)
-def middle_place(x, p, i):
-    n = p.cols
-    return 0.5 * (x[i] + x[i + 1]), 0.5 * (x[n + i] + x[n + i + 1]), 0.5 * (x[2 * n + i] + x[2 * n + i + 1])
+def is_particle_near(x, p, a, balls, block, reach):
+    n, most = p.rows * p.cols, balls[3, block] + reach
+    dx, dy, dz = balls[0, block] - x[a], balls[1, block] - x[n + a], balls[2, block] - x[2 * n + a]
+    return dx * dx + dy * dy + dz * dz < most * most
 
 
 @kernel(inline=True)
 def are_near_on_grid(p, a, b):
-    i, j = abs(b // p.cols - a // p.cols), abs(b % p.cols - a % p.cols)
+    first, second = row_of(a, p.cols), row_of(b, p.cols)
+    i, j = abs(second - first), abs(b - a - (second - first) * p.cols)
     if i <= NEIGHBOURS and j <= NEIGHBOURS:
         return True
     fold = 0.5 * math.pi * p.thickness
@@ -69,11 +113,25 @@ def by_parts(particles: Any, links: Any) -> Any:
 part_count = by_parts(
     particles=kernel(lambda p: p.rows * p.cols, inline=True), links=kernel(lambda p: p.cols - 1, inline=True)
 )  # fmt: skip
-place_of = by_parts(particles=particle_place, links=middle_place)
-# Largest distance [m] between the places of two parts that are nearer to each other than `reach`.
-place_reach = by_parts(
-    particles=kernel(lambda x, p, reach: reach, inline=True),
-    links=kernel(lambda x, p, reach: reach + math.sqrt(longest(x, np.uint64(p.cols))), inline=True),
+# Balls about blocks of parts, (4, blocks) [m]; the first row and that after the last of one, and so its columns; and
+# False if no part of a block is within reach of part a.
+balls_of = by_parts(particles=balls_of_particles, links=balls_of_links)
+block_of = by_parts(particles=block_at, links=kernel(lambda p, block: (0, 1, block, block + 1), inline=True))
+is_near_block = by_parts(
+    particles=is_particle_near, links=kernel(lambda x, p, a, balls, block, reach: True, inline=True)
+)  # fmt: skip
+# Number of the blocks `beside` one, without those that a flat region shows to have no pairs within reach with it.
+without_flat = by_parts(
+    particles=without_flat_blocks,
+    links=kernel(lambda x, p, block, beside, near, reach: near, inline=True),
+)
+# Distance [m] within which pairs are looked for.
+reach_of = by_parts(
+    particles=kernel(
+        lambda p: max((1.0 + SKIN) * p.thickness, min((1.0 + WIDE_SKIN) * p.thickness, WIDEST * spacing_of(p))),
+        inline=True,
+    ),
+    links=kernel(lambda p: (1.0 + SKIN) * p.thickness, inline=True),
 )
 # True if parts a and b are neighbours along the net, which do not push each other.
 are_neighbours = by_parts(particles=are_near_on_grid, links=are_near_on_chain)
@@ -87,35 +145,29 @@ distance_of = by_parts(
 )
 
 
-@kernel(inline=True)
-def cell(x, inverse):
-    return np.int64(math.floor(x * inverse))
-
-
-@kernel(inline=True)
-def cell_of(x, p, i, inverse):
-    px, py, pz = place_of(x, p, i)
-    return cell(px, inverse), cell(py, inverse), cell(pz, inverse)
-
-
-@kernel(inline=True)
-def bucket(cx, cy, cz, mask):
-    """Teschner's hash of a cell (VMV 2003), to a power of two of buckets."""
-    return ((cx * 73856093) ^ (cy * 19349663) ^ (cz * 83492791)) & mask
-
-
 @kernel
-def sort_into_buckets(where, order, mask):
-    """Set `order` to the numbers of all items by their buckets `where`; returns where each bucket starts, from 1 on."""
-    starts = np.zeros(mask + 2, np.int64)
-    for j in range(where.shape[0]):
-        starts[where[j] + 1] += 1
-    for q in range(mask + 1):
-        starts[q + 1] += starts[q]
-    for j in range(where.shape[0] - 1, -1, -1):
-        starts[where[j] + 1] -= 1
-        order[starts[where[j] + 1]] = j
-    return starts
+def list_part(x, p, a, block, near, beside, balls, reach):
+    """List the pairs of part a of a block with parts of those `beside` it."""
+    most = p.pairs.shape[0] - 1
+    for s in range(near):
+        other = beside[s]
+        if not is_near_block(x, p, a, balls, other, reach):
+            continue
+        top, bottom, left, right = block_of(p, other)
+        for i in range(top, bottom):
+            for b in range(i * p.cols + left, i * p.cols + right):
+                if other == block and b <= a:
+                    continue
+                distance = distance_of(x, p, a, b)
+                if distance >= reach or are_joined(p, a, b):
+                    continue
+                p.nearest[0] = min(p.nearest[0], distance)
+                count = p.pairs[most, 0]
+                if count == most:
+                    return False
+                p.pairs[count, 0], p.pairs[count, 1] = a, b
+                p.pairs[most, 0] = count + 1
+    return True
 
 
 @kernel
@@ -127,57 +179,37 @@ def find_pairs_within(x, p, reach):
 
     No pairs if p.stop cancels: callers of a kernel that may stop here check p.stop afterwards.
     """
-    n = part_count(p)
-    inverse = 1.0 / place_reach(x, p, reach)
-    mask = 1
-    while mask < n:
-        mask *= 2
-    mask -= 1
-    where, order = np.empty(n, np.int64), np.empty(n, np.int64)
-    for j in range(n):
-        cx, cy, cz = cell_of(x, p, j, inverse)
-        where[j] = bucket(cx, cy, cz, mask)
-    starts = sort_into_buckets(where, order, mask)
-    most = p.pairs.shape[0] - 1
-    count, nearest = 0, reach
-    p.nearest[0] = 0.0
-    for a in range(n):
-        if count == most:  # of a net in one heap the search would take the square of its parts
-            p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
+    last, done, reported = p.pairs.shape[0] - 1, 0, 0
+    balls = balls_of(x, p)
+    buckets, beside = sort_balls(balls, reach), np.empty(balls.shape[1], np.int64)
+    has_room = True
+    p.pairs[last, 0], p.nearest[0] = 0, reach
+    for block in range(balls.shape[1]):
+        if done >= reported:
+            reported = done + UNASKED
+            if is_stopped(p.stop):
+                p.pairs[last, 0], p.nearest[0] = 0, 0.0
+                return
+        near = balls_near(balls, buckets, block, reach, beside)
+        near = without_flat(x, p, block, beside, near, reach)
+        top, bottom, left, right = block_of(p, block)
+        for i in range(top, bottom):
+            for a in range(i * p.cols + left, i * p.cols + right):
+                # Of a net in one heap the search would take the square of its parts.
+                if has_room and not list_part(x, p, a, block, near, beside, balls, reach):
+                    has_room = False
+                    p.pairs[last, 1] = max(p.pairs[last, 1], part_count(p) - done)
+                done += 1
+        if not has_room:
+            p.nearest[0] = 0.0
             break
-        if a % UNASKED == 0 and is_stopped(p.stop):
-            p.pairs[most, 0] = 0
-            return
-        ca, cb, cc = cell_of(x, p, a, inverse)
-        for near in range(27):
-            cx, cy, cz = ca + near // 9 - 1, cb + near // 3 % 3 - 1, cc + near % 3 - 1
-            q = bucket(cx, cy, cz, mask)
-            end = starts[q + 2] if q < mask else n
-            for s in range(starts[q + 1], end):
-                b = order[s]
-                if b <= a or are_joined(p, a, b):
-                    continue
-                distance = distance_of(x, p, a, b)
-                if distance >= reach:
-                    continue
-                nearest = min(nearest, distance)
-                # Two cells of the 27 may share a bucket: take the pair from the cell that b is in.
-                bx, by, bz = cell_of(x, p, b, inverse)
-                other = bx == cx and by == cy and bz == cz
-                if other and count < most:
-                    p.pairs[count, 0], p.pairs[count, 1] = a, b
-                    count += 1
-                elif other:
-                    p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
-    p.pairs[most, 0] = count
-    p.nearest[0] = nearest if count < most else 0.0
     for j in range(x.shape[0]):
         p.seen[j] = x[j]
 
 
 @kernel
 def find_pairs(x, p):
-    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness."""
+    """Fill p.pairs with the pairs within reach."""
     find_pairs_within(x, p, reach_of(p))
 
 
@@ -190,23 +222,45 @@ def mean_shift(x, seen, o, n):
 
 
 @kernel(noalias=True, inline=True)
-def farthest(x, seen, n):
-    """Largest squared displacement of a particle since the list was made, relative to the mean displacement."""
-    mx, my, mz = mean_shift(x, seen, np.uint64(0), n), mean_shift(x, seen, n, n), mean_shift(x, seen, n + n, n)
-    most = 0.0
-    for j in range(n):
+def add_motion(x, seen, o, n, mx, my, mz, most, lanes):
+    """Raise `most` (lanes,) to the squared displacements, less their mean, of as many particles from o on."""
+    for k in range(lanes):
+        j = o + k
         dx, dy, dz = x[j] - seen[j] - mx, x[n + j] - seen[n + j] - my, x[n + n + j] - seen[n + n + j] - mz
-        most = max(most, dx * dx + dy * dy + dz * dz)
-    return most
+        square = dx * dx + dy * dy + dz * dz
+        most[k] = square if square > most[k] else most[k]
+
+
+@kernel(noalias=True, allocates=False)
+def add_motions(x, seen, n, mx, my, mz, most, lanes):
+    for part in range(n // lanes):
+        add_motion(x, seen, np.uint64(part) * lanes, n, mx, my, mz, most, lanes)
+    add_motion(x, seen, n // lanes * lanes, n, mx, my, mz, most, n % lanes)
+
+
+@kernel(noalias=True)
+def farthest(x, seen, n):
+    """Largest squared displacement of a particle since the list was made, relative to the mean displacement; NaN if
+    any is."""
+    mx, my, mz = mean_shift(x, seen, np.uint64(0), n), mean_shift(x, seen, n, n), mean_shift(x, seen, n + n, n)
+    # A maximum in lanes is as quick as the memory; a single one waits for each comparison.
+    most = np.zeros(LANES)
+    add_motions(x, seen, n, mx, my, mz, most, np.uint64(LANES))
+    return most.max() if mx + my + mz - (mx + my + mz) == 0.0 else math.nan
 
 
 @kernel(allocates=False)
 def refresh_pairs(x, p):
-    """Find the pairs again if a point has moved by half the skin; returns their number."""
-    half = 0.5 * SKIN * p.thickness
+    """Find the pairs again if a point has moved by half the skin; returns their number, 0 if p.stop cancels."""
+    half = 0.5 * (reach_of(p) - p.thickness)
     last = p.pairs.shape[0] - 1
     if p.pairs[last, 0] < 0 or not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:
         find_pairs(x, p)
+    p.looks[0] += p.pairs[last, 0]
+    if p.looks[0] > LOOKS_UNASKED:
+        if is_stopped(p.stop):
+            return 0
+        p.looks[0] = 0
     return p.pairs[last, 0]
 
 

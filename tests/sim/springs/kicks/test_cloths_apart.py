@@ -86,6 +86,38 @@ def test_a_point_in_the_middle_of_a_face_pushes_it():
     assert state.x[2, 0, 0] < -1e-3
 
 
+@pytest.mark.parametrize("name", QUICK)
+def test_how_the_steps_are_shared_among_calls_changes_nothing(name):
+    """Bit by bit: neither a list that lasts over calls nor a new one for a copy changes a sum."""
+    net, v = thrown_layers(3, 0.6, 3.0)
+    one, parts, copied = (State.at_rest(net) for _ in range(3))
+    for state in (one, parts, copied):
+        state.v[:] = v
+    advance(net, one, name, 1 / 1200, 60)
+    for _ in range(12):
+        advance(net, parts, name, 1 / 1200, 5)
+        advance(net, copied, name, 1 / 1200, 5)
+        copied = copied.copy()
+        assert copied.lists is None
+    for state in (parts, copied):
+        assert np.array_equal(state.x, one.x)
+        assert np.array_equal(state.v, one.v)
+
+
+def test_lists_are_made_anew_where_a_state_or_the_thickness_was_changed_from_outside():
+    net, v = thrown_layers(3, 0.6, 3.0)
+    for thickness, move in ((net.thickness, 0.3), (3.0 * net.thickness, 0.0)):
+        state = State.at_rest(net)
+        state.v[:] = v
+        advance(net, state, "leapfrog", 1 / 1200, 20)
+        state.x[2, :3] += move
+        other = dataclasses.replace(net, thickness=thickness)
+        fresh = state.copy()
+        for each in (state, fresh):
+            advance(other, each, "leapfrog", 1 / 1200, 20)
+        assert np.array_equal(state.x, fresh.x)
+
+
 def test_a_run_says_that_layers_were_slowed_down():
     net, v = thrown_layers(0, 1.0, 10.0)
     with pytest.warns(ApproximationWarning, match="[0-9]+ steps of .* parts of the net that touch were slowed down"):

@@ -49,8 +49,8 @@ def rope(
     law: of the links, a name in `LAWS` or its numbers, as `sim.springs.laws.stiffening.Stiffening(30.0)`.
     end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
     radius: of the points and links, for contact [m]. self_contact: True: links of this radius push each other with the
-    contact's stiffness and damping, without friction. Links with less than a half circle of rope between them, which
-    the tightest bend needs, do not.
+    contact's stiffness, damping and friction. Links with less than a half circle of rope between them, which the
+    tightest bend needs, do not.
 
     Raises ValueError, naming the argument, its value and what is allowed.
 

@@ -17,7 +17,7 @@ class RopeParams(SharedRopeParams):
     sphere_radius: float = in_surroundings(0.75, 0.05, 3.0, "m", "Radius of the sphere")
 
     self_contact: bool = in_main(
-        False, doc="Links push each other apart: no strand passes another", title="Touches itself"
+        False, doc="Links push each other apart and rub: no strand passes another", title="Touches itself"
     )
     start: str = parameter(
         "level",
@@ -100,7 +100,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 def hidden(params: RopeParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
-    names = hidden_of_rope(params, sphere=params.sphere)
+    names = hidden_of_rope(params, sphere=params.sphere, touches_itself=touches_itself(params))
     if not params.sphere:
         names |= {"sphere_radius", "plot_along"}
     if not may_touch_itself(params):

@@ -75,10 +75,10 @@ LAB_ONLY = {"stiffness", "damping", "mass", "drag"}
 MATERIAL_ONLY = {"axial_stiffness", "axial_viscosity", "mass_per_length", "drag_per_length"}
 
 
-def hidden_of_rope(params: SharedRopeParams, *, sphere: bool) -> set[str]:
+def hidden_of_rope(params: SharedRopeParams, *, sphere: bool, touches_itself: bool = False) -> set[str]:
     """The shared parameters that mean nothing with the others as they are. sphere: whether there is one."""
     names = set(MATERIAL_ONLY if params.units == "lab" else LAB_ONLY)
-    if not (params.floor or sphere):
+    if not (params.floor or sphere or touches_itself):
         names |= {"friction", "contact_stiffness", "contact_damping", "contact_law"}
     if params.root_swing == 0.0:
         names.add("swing_period")

@@ -264,6 +264,13 @@ def refresh_pairs(x, p):
     return p.pairs[last, 0]
 
 
+@kernel(allocates=False)
+def pairs_at_hand(x, p):
+    """Number of pairs in the list, which `refresh_pairs` has looked at with these x, if it has been called at all."""
+    last = p.pairs.shape[0] - 1
+    return p.pairs[last, 0] if p.pairs[last, 0] >= 0 else refresh_pairs(x, p)
+
+
 @kernel
 def count_touching(x, p, touching):
     """Add to touching (rows cols,) how many others each particle, or the link from it, touches."""

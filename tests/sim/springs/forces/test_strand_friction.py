@@ -148,7 +148,7 @@ def over_a_strand(friction, speed):
     path = [(r, 0.0, -z) for z in down[::-1]] + [(r * math.cos(a), 0.0, r * math.sin(a)) for a in turn]
     path += [(-r, 0.0, (math.pi - turn[-1]) * r - z) for z in down]
     x = [(0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (2.0, 1.0, 0.0), (2.0, 0.0, -1.0), *path]
-    mass = [*[1e-3] * (len(x) - 1), 1.0]
+    mass = [*[1e-4] * (len(x) - 1), 1.0]
     net = rope(len(x), rest * (len(x) - 1), mass, stiffness, 0.3, 0.0, G, contact=Contact(2e4, 1.0, friction),
                radius=r / 2.0, self_contact=True)  # fmt: skip
     pin = PinPath(0.0, (path[0], (0.0, 0.0, -speed), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
@@ -158,7 +158,7 @@ def over_a_strand(friction, speed):
 
 @pytest.mark.parametrize("friction", [0.0, 0.2, 0.4])
 def test_a_strand_that_slips_over_another_has_the_tensions_of_the_capstan(friction):
-    """exp(mu theta) on half a turn, on a polygon of 12 links, to 1 %."""
+    """exp(mu theta) on half a turn, on a polygon of 12 links, to 1.5 %."""
     net, first = over_a_strand(friction, 0.03)
     state, pulls = State.at_rest(net), []
     advance(net, state, "leapfrog", 2e-5, 100_000)
@@ -167,4 +167,4 @@ def test_a_strand_that_slips_over_another_has_the_tensions_of_the_capstan(fricti
         tension = tensions(net, state)
         pulls.append((tension[first + 2], tension[-2]))
     high, low = np.mean(pulls, axis=0)
-    assert high / low == pytest.approx(math.exp(friction * math.pi), rel=0.01)
+    assert high / low == pytest.approx(math.exp(friction * math.pi), rel=0.015)

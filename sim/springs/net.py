@@ -326,7 +326,7 @@ class Net(PointSystem[Run]):
         if isinstance(view, GridArrays):
             return view
         view = view._replace(last=np.zeros_like(view.last), between=np.zeros_like(view.between))
-        return view._replace(**(self._rub_arrays()._asdict() if self.is_strand else self._cell_arrays()))
+        return view._replace(**(rub_arrays(self) if self.is_strand else cell_arrays(self)))
 
     @functools.cached_property
     def _unit_step_view(self) -> Any:
@@ -392,7 +392,7 @@ class Net(PointSystem[Run]):
             looks=np.zeros(1, np.int64),
         )
         if self.is_chain:
-            return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12), *self._rub_arrays())
+            return StrandArrays(*view, *touch, np.zeros(self.x0.size), np.zeros(12), **rub_arrays(self))
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,
@@ -408,22 +408,23 @@ class Net(PointSystem[Run]):
         grid = GridArrays(*view, *touch, *wide)
         if [f[:2] for f in self.families] != CLOTH:
             return grid
-        return ClothArrays(*grid, np.zeros_like(touch.seen), np.zeros(12), **self._cell_arrays())
+        return ClothArrays(*grid, np.zeros_like(touch.seen), np.zeros(12), **cell_arrays(self))
 
-    def _rub_arrays(self) -> RubArrays:
-        """`RubArrays` of a list that is not yet made."""
-        touching = np.empty((self.most_pairs + 1, 2), np.int64)
-        touching[-1] = -1
-        return RubArrays(touching, np.empty((self.most_pairs, 13)), np.empty((self.most_pairs, 5)))
 
-    def _cell_arrays(self) -> dict[str, Any]:
-        """`CellArrays` of a list that is not yet made."""
-        most = NEAR_CELLS * self.x0[0].size if self.thickness > 0.0 else 0
-        near = np.empty((most + 1, 3), np.int64)
-        near[-1] = -1, 0, 0
-        listed, joined = np.zeros((2, self.x0.size if most else 3))
-        cells = CellArrays(near, np.empty(most), listed, joined, np.zeros(4), *np.zeros((3, 3)))
-        return cells._asdict()
+def rub_arrays(net: Net) -> dict[str, Any]:
+    """`RubArrays` of a list that is not yet made."""
+    touching = np.empty((net.most_pairs + 1, 2), np.int64)
+    touching[-1] = -1
+    return RubArrays(touching, np.empty((net.most_pairs, 13)), np.empty((net.most_pairs, 5)))._asdict()
+
+
+def cell_arrays(net: Net) -> dict[str, Any]:
+    """`CellArrays` of a list that is not yet made."""
+    most = NEAR_CELLS * net.x0[0].size if net.thickness > 0.0 else 0
+    near = np.empty((most + 1, 3), np.int64)
+    near[-1] = -1, 0, 0
+    listed, joined = np.zeros((2, net.x0.size if most else 3))
+    return CellArrays(near, np.empty(most), listed, joined, np.zeros(4), *np.zeros((3, 3)))._asdict()
 
 
 def components(prefix: str, vector: Sequence[float]) -> dict[str, float]:

@@ -49,9 +49,9 @@ from sim.springs.integrators.implicit.tangent import (
     set_tangent,
 )
 from sim.springs.laws import largest_stiffness
+from sim.springs.near.near_pairs import count_touching
 from sim.springs.net import Net
 from sim.springs.points.line_arrays import LineArrays
-from sim.springs.points.near_pairs import count_touching
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
 from sim.validation import check_positive

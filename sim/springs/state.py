@@ -107,7 +107,7 @@ def view_of(system: PointSystem, h: float, driven: Driven) -> Any:
 
 
 def view_with_lists(p: Any, state: State) -> Any:
-    """`p` with the lists of what is near that the last call of `advance` made for this state.
+    """`p` with the lists of near parts from the last call of `advance` for this state.
 
     Kernels make them anew if positions have changed. Those for another thickness or spacing are not used.
     """

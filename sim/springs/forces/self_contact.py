@@ -1,6 +1,6 @@
 """A net against itself: particles nearer than the thickness push each other apart, neighbours on the grid excepted.
 
-Pairs and neighbours are those of `sim.springs.points.near_pairs`, so that a flat net that is thick beside its spacing
+Pairs and neighbours are those of `sim.springs.near.near_pairs`, so that a flat net that is thick beside its spacing
 does not push itself apart. Below a thickness of 0.71 of the spacing a particle in the middle of a cell feels no force;
 that it does not pass, `sim.springs.kicks.apart` achieves. Of a chain the links touch
 (`sim.springs.forces.strand_contact`).
@@ -11,8 +11,8 @@ import math
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import WIDE_NETS, Force
+from sim.springs.near.near_pairs import pairs_at_hand, refresh_pairs
 from sim.springs.points.each_link import TINY
-from sim.springs.points.near_pairs import pairs_at_hand, refresh_pairs
 from sim.springs.points.order import in_turn
 
 

@@ -16,9 +16,9 @@ from sim.springs.forces.contact import clipped_flow
 from sim.springs.forces.link_contact import add_at, mobility
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
 from sim.springs.forces.record import Force
+from sim.springs.near.near_pairs import are_neighbours, refresh_pairs
 from sim.springs.points.arrays import StrandArrays, span
 from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
-from sim.springs.points.near_pairs import are_neighbours, refresh_pairs
 from sim.springs.points.order import in_turn
 from sim.springs.points.places import dot
 

@@ -60,7 +60,7 @@ def along_surface(pair, u, v, w):
 
 @kernel(inline=True)
 def change(out, p, i, pair, column, fx, fy, fz):
-    """Set the force, or impulse, on the second link of a pair, with what it adds to `out`; returns its change, squared."""
+    """Set the force, or impulse, on the second link of a pair, and add its change to `out`; returns that, squared."""
     n, w, row = p.cols, p.inverse_masses, p.rubs[i]
     dx, dy, dz = fx - row[column], fy - row[column + 1], fz - row[column + 2]
     row[column], row[column + 1], row[column + 2] = fx, fy, fz
@@ -169,7 +169,7 @@ def kept_place(p, i, count):
 
 @kernel(allocates=False)
 def begin_with_last(v, s, p, count):
-    """Begin with the impulses of the last kick, as far as the pairs still bear them. False if there are none."""
+    """Begin with the impulses of the last kick, each at most its pair's limit; returns False without such a kick."""
     kept = max(0, p.touching[p.touching.shape[0] - 1, 1])
     for i in range(count):
         k = kept_place(p, i, kept)

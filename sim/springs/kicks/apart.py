@@ -20,8 +20,7 @@ import numpy as np
 
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import kinetic_energy, stored_energies
-from sim.springs.points.arrays import by_net
-from sim.springs.points.near_cells import (
+from sim.springs.near.near_cells import (
     find_near,
     find_neighbours,
     four_in_list,
@@ -32,7 +31,7 @@ from sim.springs.points.near_cells import (
     start_motion,
     stays_clear,
 )
-from sim.springs.points.near_pairs import (
+from sim.springs.near.near_pairs import (
     farthest,
     find_pairs_within,
     mean_shift,
@@ -40,6 +39,7 @@ from sim.springs.points.near_pairs import (
     refresh_pairs,
     spacing_of,
 )
+from sim.springs.points.arrays import by_net
 from sim.springs.points.places import (
     Four,
     NearestPlaces,

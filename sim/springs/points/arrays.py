@@ -63,7 +63,7 @@ class RopeArrays(NamedTuple):
 
 
 class TouchArrays(NamedTuple):
-    """Extra kernel data of nets that may touch themselves, see `sim.springs.points.near_pairs`."""
+    """Extra kernel data of nets that may touch themselves, see `sim.springs.near.near_pairs`."""
 
     thickness: float  # [m] at which particles, or links of a chain, push each other, 0: never
     row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
@@ -93,7 +93,7 @@ class RubArrays(NamedTuple):
 
 
 class CellArrays(NamedTuple):
-    """Extra kernel data of cloths that touch themselves, see `sim.springs.points.near_cells`."""
+    """Extra kernel data of cloths that touch themselves, see `sim.springs.near.near_cells`."""
 
     # (most + 1, 3): pairs that may meet, and the kind of each; their number in [-1, 0], -1: there is no list yet, and
     # that of FAR ones, which come first, in [-1, 1]

@@ -13,9 +13,9 @@ from sim.springs.analysis.strain import structural_strain
 from sim.springs.cloth import PIN_CHOICES, pleated_cloth, vertical_cloth
 from sim.springs.forces.matrices import STIFFNESS
 from sim.springs.integrators.implicit.tangent import set_tangent
+from sim.springs.near.near_pairs import find_pairs, reach_of
 from sim.springs.net import CLOTH
 from sim.springs.points.acceleration import set_acceleration
-from sim.springs.points.near_pairs import find_pairs, reach_of
 from sim.springs.state import State, advance, energy
 from sim.springs.statics import catenary, hanging_chain
 from sim.validation import ApproximationWarning

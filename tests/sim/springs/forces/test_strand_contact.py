@@ -10,9 +10,9 @@ import pytest
 from sim.springs import INTEGRATORS, Contact, PinPath, critical_step, rope, simulate
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators.implicit.tangent import set_tangent
+from sim.springs.near.near_pairs import SKIN, find_pairs, refresh_pairs
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.points.link_pairs import pair_at
-from sim.springs.points.near_pairs import SKIN, find_pairs, refresh_pairs
 from sim.springs.stability import gershgorin, top_modes
 from sim.springs.state import State, advance, energy, velocities
 from sim.validation import ApproximationWarning

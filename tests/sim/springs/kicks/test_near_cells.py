@@ -7,8 +7,8 @@ import pytest
 
 from sim.springs import cloth
 from sim.springs.kicks.apart import least_distance
-from sim.springs.points.near_balls import balls_near, sort_balls
-from sim.springs.points.near_cells import find_near, find_neighbours, four_in_list, motion_since
+from sim.springs.near.near_balls import balls_near, sort_balls
+from sim.springs.near.near_cells import find_near, find_neighbours, four_in_list, motion_since
 from sim.springs.points.places import Four, places_at
 from tests.sim.springs.kicks.cloths import elements
 

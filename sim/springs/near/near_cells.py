@@ -13,6 +13,9 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
+from sim.springs.near.near_balls import balls_meet, balls_near, sort_balls
+from sim.springs.near.near_pairs import farthest, mean_shift, spacing_of
+from sim.springs.near.windows import are_beside, block_at, blocks_in, region, window, window_place
 from sim.springs.points.cells import (
     EDGES,
     FACES,
@@ -22,10 +25,7 @@ from sim.springs.points.cells import (
     point_and_face,
     two_edges,
 )
-from sim.springs.points.near_balls import balls_meet, balls_near, sort_balls
-from sim.springs.points.near_pairs import farthest, mean_shift, spacing_of
 from sim.springs.points.places import closing_bound, places_at
-from sim.springs.points.windows import are_beside, block_at, blocks_in, region, window, window_place
 
 # Kinds of pairs: on different parts of the cloth; of cells with a common point; of cells with one cell between them.
 FAR, JOINED, NEXT = 0, 1, 2

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from sim.jit import is_stopped, kernel
+from sim.springs.near.near_balls import balls_near, sort_balls
+from sim.springs.near.windows import are_beside, block_at, blocks_in, region, row_of
 from sim.springs.points.arrays import by_net, span
 from sim.springs.points.link_pairs import pair_at
-from sim.springs.points.near_balls import balls_near, sort_balls
-from sim.springs.points.windows import are_beside, block_at, blocks_in, region, row_of
 
 UNASKED = 64  # particles or links between two looks at whether the search is to end
 LOOKS_UNASKED = 100_000  # pairs between two checks for a stop of the solve

@@ -132,8 +132,8 @@ class Scene(Protocol[P, F_co, R_co]):
         """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/checkpoints.py`)."""
         ...
 
-    def resume(self, kept: object) -> None:
-        """Resume from a checkpoint of `keep`, with the `params` of that time; `kept` can be used again.
+    def resume(self, checkpoint: object) -> None:
+        """Resume from a checkpoint of `keep`, with the `params` of that time; `checkpoint` can be used again.
 
         Objects that were held then are released.
         """

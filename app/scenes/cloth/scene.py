@@ -140,9 +140,9 @@ class ClothScene(NetScene[ClothParams]):
         if self.student is not None:
             self.student.start(self.params, self.state)
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        super().resume(kept)
+        super().resume(checkpoint)
         self.tuner.restart()
         self.assess_stability()
         if self.student is not None:
@@ -197,7 +197,7 @@ class ClothScene(NetScene[ClothParams]):
         self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
         return net
 
-    def moved(self, good: State, steps: int, found: Extremes) -> None:
+    def moved(self, good: State, steps: int, extremes: Extremes) -> None:
         """Count the corrections, and let the student's cloth follow."""
         self.motion.count_evals()
         if self.student is not None:

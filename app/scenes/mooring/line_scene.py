@@ -307,9 +307,9 @@ class LineScene(abc.ABC):
         """Checkpoint: everything that changes."""
         return copied({name: getattr(self, name) for name in self.changing}, self.system, self.sea)
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        restore(self, kept)
+        restore(self, checkpoint)
         self.grabbed = None
         self.take_step()
         self.tensions.take_now(*self.find_tensions())

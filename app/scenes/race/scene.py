@@ -101,9 +101,9 @@ class RaceScene:
         """Checkpoint: all ropes and their references, the charts and moved objects."""
         return copied({name: getattr(self, name) for name in CHANGING}, self.charts.drawn)
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        restore(self, kept)
+        restore(self, checkpoint)
         self.handles.grab.clear()
 
     def change_forces(self, params: RaceParams) -> None:

@@ -165,9 +165,9 @@ class RadialSeaScene:
             bodies.body_kinds,
         )
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        restore(self, kept)
+        restore(self, checkpoint)
         self.bodies.release_all()
         self.tile, self.drawing.drawn = None, ()
         self.plot_rows.resume()

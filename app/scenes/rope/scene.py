@@ -188,9 +188,9 @@ class RopeScene(NetScene[RopeParams]):
         if self.student is not None:
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        super().resume(kept)
+        super().resume(checkpoint)
         self.max_speed = np.inf
         self.assess_stability()
         if self.student is not None:
@@ -217,9 +217,9 @@ class RopeScene(NetScene[RopeParams]):
         """The net with the motions of root, sphere and pull over the next `duration` [s] from time t [s]."""
         return self.handles.net_during(self.net, t, duration, self.step, self.params)
 
-    def moved(self, good: State, steps: int, found: Extremes) -> None:
+    def moved(self, good: State, steps: int, extremes: Extremes) -> None:
         """Put an end that has just come to rest in its place, and let the student's rope follow."""
-        self.max_speed = found.speed
+        self.max_speed = extremes.speed
         for (_, column), _ in self.net.pin_paths:
             held = self.handles.root if column == 0 else self.handles.end
             if held is not None and held.at_rest:

@@ -84,7 +84,7 @@ class NetScene(abc.ABC, Generic[P]):
         """The net with the motions caused by a user over the next `duration` [s] from time t [s]."""
 
     @abc.abstractmethod
-    def moved(self, good: State, steps: int, found: Extremes) -> None:
+    def moved(self, good: State, steps: int, extremes: Extremes) -> None:
         """React to steps from the state `good` to one with these extremes."""
 
     @abc.abstractmethod
@@ -123,9 +123,9 @@ class NetScene(abc.ABC, Generic[P]):
         """Checkpoint: state, energy account and moved objects."""
         return copied({name: getattr(self, name) for name in self.CHANGING})
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`."""
-        restore(self, kept)
+        restore(self, checkpoint)
         self.choose_method()
         self.grab.clear()
         self.plot_rows.resume()

@@ -139,9 +139,9 @@ class SquareSeaScene:
         """Checkpoint of sea, foam and rain."""
         return copied({name: getattr(self, name) for name in CHANGING}, self.foam.values)
 
-    def resume(self, kept: object) -> None:
+    def resume(self, checkpoint: object) -> None:
         """Resume from a checkpoint of `keep`; the wave gauge keeps its place and drops later values."""
-        restore(self, kept)
+        restore(self, checkpoint)
         while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
             self.gauge.trace.pop()
         self.plot_rows.resume()

@@ -47,7 +47,7 @@ const RAIN_VERTEX = `
         rest = place;
       }
     }
-    float fresh = smoothstep(spray.z, mix(spray.z, 1.0, 0.3), foam);
+    float fresh = smoothstep(0.0, 0.3, (foam - spray.z) / (1.0 - spray.z));
     if (fresh <= 0.0) {
       gl_Position = vec4(0.0, 0.0, 2.0, 1.0); // outside of the view
       return;

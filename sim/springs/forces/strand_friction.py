@@ -156,23 +156,27 @@ def pins_share(v, p, i, column):
 
 
 @kernel(inline=True)
-def kept_place(p, i, count):
-    """Number of touching pair i among those of the last kick, `count` if it did not touch then."""
+def kept_place(p, i, first, count):
+    """Number of touching pair i among those of the last kick from `first` on, `count` if it did not touch then.
+
+    The pairs of both lists are in the order of their first points.
+    """
     a, b, last = p.touching[i, 0], p.touching[i, 1], p.last_rubs
-    if i < count and last[i, 0] == a and last[i, 1] == b:  # most lists stay
-        return i
-    for k in range(count):
-        if last[k, 0] == a and last[k, 1] == b:
-            return k
+    while first < count and last[first, 0] == a:
+        if last[first, 1] == b:
+            return first
+        first += 1
     return count
 
 
 @kernel(allocates=False)
 def begin_with_last(v, s, p, count):
     """Begin with the impulses of the last kick, each at most its pair's limit; returns False without such a kick."""
-    kept = max(0, p.touching[p.touching.shape[0] - 1, 1])
+    kept, first = max(0, p.touching[p.touching.shape[0] - 1, 1]), 0
     for i in range(count):
-        k = kept_place(p, i, kept)
+        while first < kept and p.last_rubs[first, 0] < p.touching[i, 0]:
+            first += 1
+        k = kept_place(p, i, first, kept)
         if k == kept or p.rubs[i, MOBILITY] == 0.0:
             continue
         pair, last = rubbing(p, i), p.last_rubs[k]

@@ -1,4 +1,4 @@
-"""What it costs that a rope or a cloth touches itself: steps of `leapfrog` over those of the same without it."""
+"""Cost of the contact of a rope or a cloth with itself: steps of `leapfrog` over those without it."""
 
 import dataclasses
 import statistics

@@ -54,13 +54,19 @@ def push_of(v, p, pair, depth, with_damping):
 
 
 @kernel(inline=True)
+def add_opposite(out, p, pair, size, fx, fy, fz):
+    """Add the change by an impulse `size` (fx, fy, fz) [N s] on the second link, and by its opposite on the first."""
+    n, w = p.cols, p.inverse_masses
+    add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a] * size, fx, fy, fz)
+    add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1] * size, fx, fy, fz)
+    add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b] * size, fx, fy, fz)
+    add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1] * size, fx, fy, fz)
+
+
+@kernel(inline=True)
 def add_kick(out, p, pair, size):
     """Change of velocities by an impulse `size` [N s] that pushes two places apart."""
-    n, w, nx, ny, nz = p.cols, p.inverse_masses, pair.nx, pair.ny, pair.nz
-    add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a] * size, nx, ny, nz)
-    add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1] * size, nx, ny, nz)
-    add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b] * size, nx, ny, nz)
-    add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1] * size, nx, ny, nz)
+    add_opposite(out, p, pair, size, pair.nx, pair.ny, pair.nz)
 
 
 @kernel(allocates=False)

@@ -14,11 +14,18 @@ import math
 
 from sim import point_laws
 from sim.jit import kernel
-from sim.springs.forces.link_contact import add_at
 from sim.springs.forces.record import Force
-from sim.springs.forces.strand_contact import depth_of, pair_mobility, pinned_velocity, push_of, touching_at_hand
+from sim.springs.forces.strand_contact import (
+    add_opposite,
+    depth_of,
+    pair_mobility,
+    pinned_velocity,
+    push_of,
+    touching_at_hand,
+    touching_pair,
+)
 from sim.springs.points.arrays import StrandArrays
-from sim.springs.points.link_pairs import LinkPair, opening_of, pair_at
+from sim.springs.points.link_pairs import LinkPair, opening_of
 from sim.springs.points.order import in_turn
 
 SWEEPS = 50
@@ -26,7 +33,7 @@ MORE_SWEEPS = 4
 SETTLED = 1e-6
 # Columns of p.rubs: the pair's places and normal as in `LinkPair`, mu N [N], its mobility [1/kg], the force on its
 # second link [N], and the impulse [N s].
-MOST, MOBILITY, FORCE_AT, IMPULSE_AT, COLUMNS = 5, 6, 7, 10, 13
+MOST, MOBILITY, FORCE_AT, IMPULSE_AT = 5, 6, 7, 10
 
 stopping = kernel(inline=True)(point_laws.stopping)
 
@@ -43,7 +50,7 @@ def note(x, v, p):
     """Note the touching pairs with the force mu N of each; returns their number, and the largest mu N [N]."""
     count, largest = touching_at_hand(x, p), 0.0
     for i in range(count):
-        pair, row = pair_at(x, p.cols, p.touching[i, 0], p.touching[i, 1]), p.rubs[i]
+        pair, row = touching_pair(x, p, i), p.rubs[i]
         row[0], row[1], row[2], row[3], row[4] = pair.s, pair.t, pair.nx, pair.ny, pair.nz
         row[MOST] = p.friction * push_of(v, p, pair, depth_of(p, pair), True)
         row[MOBILITY] = pair_mobility(p, pair)
@@ -61,13 +68,10 @@ def along_surface(pair, u, v, w):
 @kernel(inline=True)
 def change(out, p, i, pair, column, fx, fy, fz):
     """Set the force, or impulse, on the second link of a pair, and add its change to `out`; returns that, squared."""
-    n, w, row = p.cols, p.inverse_masses, p.rubs[i]
+    row = p.rubs[i]
     dx, dy, dz = fx - row[column], fy - row[column + 1], fz - row[column + 2]
     row[column], row[column + 1], row[column + 2] = fx, fy, fz
-    add_at(out, pair.a, n, -(1.0 - pair.s) * w[pair.a], dx, dy, dz)
-    add_at(out, pair.a + 1, n, -pair.s * w[pair.a + 1], dx, dy, dz)
-    add_at(out, pair.b, n, (1.0 - pair.t) * w[pair.b], dx, dy, dz)
-    add_at(out, pair.b + 1, n, pair.t * w[pair.b + 1], dx, dy, dz)
+    add_opposite(out, p, pair, 1.0, dx, dy, dz)
     return dx * dx + dy * dy + dz * dz
 
 
@@ -156,7 +160,7 @@ def pins_share(v, p, i, column):
 
 
 @kernel(inline=True)
-def kept_place(p, i, first, count):
+def number_in_last(p, i, first, count):
     """Number of touching pair i among those of the last kick from `first` on, `count` if it did not touch then.
 
     The pairs of both lists are in the order of their first points.
@@ -172,19 +176,19 @@ def kept_place(p, i, first, count):
 @kernel(allocates=False)
 def begin_with_last(v, s, p, count):
     """Begin with the impulses of the last kick, each at most its pair's limit; returns False without such a kick."""
-    kept, first = max(0, p.touching[p.touching.shape[0] - 1, 1]), 0
+    number, first = max(0, p.touching[p.touching.shape[0] - 1, 1]), 0
     for i in range(count):
-        while first < kept and p.last_rubs[first, 0] < p.touching[i, 0]:
+        while first < number and p.last_rubs[first, 0] < p.touching[i, 0]:
             first += 1
-        k = kept_place(p, i, first, kept)
-        if k == kept or p.rubs[i, MOBILITY] == 0.0:
+        k = number_in_last(p, i, first, number)
+        if k == number or p.rubs[i, MOBILITY] == 0.0:
             continue
         pair, last = rubbing(p, i), p.last_rubs[k]
         jx, jy, jz = along_surface(pair, last[2], last[3], last[4])
         size, limit = math.sqrt(jx * jx + jy * jy + jz * jz), s * p.rubs[i, MOST]
         part = limit / size if size > limit else 1.0
         change(v, p, i, pair, IMPULSE_AT, part * jx, part * jy, part * jz)
-    return kept > 0
+    return number > 0
 
 
 @kernel(allocates=False)

@@ -186,7 +186,7 @@ def test_a_cloth_that_falls_freely_is_solved_in_two_corrections():
     assert state.v[2] == pytest.approx(-9.81 / 6, rel=1e-6)
 
 
-@pytest.mark.parametrize(("n", "stiffness"), [(12, 1e4), (16, 1e6)])
+@pytest.mark.parametrize(("n", "stiffness"), [(12, 1e4), (16, 1.5e6)])
 def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles(n, stiffness):
     """Also where steps do not settle: what they leave would feed the motion, but is mended."""
     net = dataclasses.replace(pleats(n, stiffness, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))

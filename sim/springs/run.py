@@ -23,4 +23,5 @@ class Run(NamedTuple):
     integrator: str  # that ran: what "auto" took
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     unsettled: int = 0  # steps of implicit methods and kicks of damped nets whose solver had not settled
+    slowed: int = 0  # steps in which parts that touch were slowed down, as impulses alone did not keep them apart
     state: Any = None  # `State` at the end, from which `simulate` continues

@@ -117,20 +117,26 @@ def simulate(
         system, t, step, how.integrator if integrator is None else integrator, with_account, progress, **options
     )
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
-    if run.unsettled > 0:
-        warnings.warn(unsettled_steps(system, run), ApproximationWarning, stacklevel=2)
+    for words in approximations(system, run):
+        warnings.warn(words, ApproximationWarning, stacklevel=2)
     return run
 
 
-def unsettled_steps(system: PointSystem, run: Any) -> str:
-    """The warning of a run with steps that are `unsettled`."""
-    steps = f"{run.unsettled} steps of {run.step:g} s"
-    if isinstance(system, Net) and system.is_strand:
-        return f"strands that touch were slowed down in {steps}, as impulses alone did not keep them apart"
-    if isinstance(system, Net) and system.thickness > 0.0 and not integrator_named(run.integrator).implicit:
-        slowed = "parts of the net that touch were slowed down, as impulses alone did not keep them apart"
-        return f"in {steps} {slowed}, or the solver of {run.integrator} had not settled"
-    return f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver"
+def approximations(system: PointSystem, run: Any) -> list[str]:
+    """Warnings of a run with steps that are `unsettled` or `slowed`."""
+    words = []
+
+    def steps_of(count: int) -> str:
+        return f"{count} step{'' if count == 1 else 's'}" + ("" if run.step is None else f" of {run.step:g} s")
+
+    if run.unsettled > 0:
+        steps = steps_of(run.unsettled)
+        words.append(f"the solver of {run.integrator} had not settled in {steps}: their error is that of the solver")
+    if isinstance(run, Run) and run.slowed > 0:
+        parts = "strands" if isinstance(system, Net) and system.is_strand else "parts of the net"
+        steps = steps_of(run.slowed)
+        words.append(f"{parts} that touch were slowed down in {steps}, as impulses alone did not keep them apart")
+    return words
 
 
 def run_net(
@@ -270,7 +276,7 @@ def stepped(
     progress: Progress,
 ) -> Run:
     """The run at times `t` [s] since the state's, which is advanced in equal steps of at most `step` [s]."""
-    evals, unsettled = state.force_evals, state.unsettled
+    evals, unsettled, slowed = state.force_evals, state.unsettled, state.slowed
     history = NetFrames(net, state, record, t, step, with_account)
     done = run_frames(history, len(t), progress)
     diverged_at = None if done == len(t) else history.end_at_divergence(done)
@@ -285,6 +291,7 @@ def stepped(
         record.name,
         state.left_out,
         state.unsettled - unsettled,
+        state.slowed - slowed,
         state,
     )
 
@@ -305,17 +312,17 @@ def marched(
     t = state.t + t
     xs = np.full((len(t), net.x0.size), np.nan)
     vs = np.full_like(xs, np.nan)
-    taken = np.zeros((len(t), 2))
+    taken = np.zeros((len(t), 3))
     x, v = state.x.reshape(-1).copy(), state.v.reshape(-1).copy()
     p = net.kernel_view(FRICTION_STEP)
     evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_account, xs, vs, taken)
     raise_if_stopped()
-    taken += state.dissipated, state.work
+    taken[:, :2] += state.dissipated, state.work
     shape = (len(t), *net.x0.shape)
     xs[filled:], vs[filled:] = np.nan, np.nan
     ledger = np.full((len(t), 6), np.nan)
     for frame in range(filled):
-        ledger[frame] = *energies(xs[frame], vs[frame], float(t[frame]), p), *taken[frame]
+        ledger[frame] = *energies(xs[frame], vs[frame], float(t[frame]), p), *taken[frame, :2]
         if progress:
             progress(frame + 1, len(t))
     diverged_at = None if filled == len(t) else float(stopped_at)
@@ -324,11 +331,12 @@ def marched(
     energies_of = energy_history(ledger, with_account or is_closed(net))
     last = max(filled - 1, 0)
     state.x[:], state.v[:], state.t = xs[last].reshape(net.x0.shape), vs[last].reshape(net.x0.shape), float(t[last])
-    state.dissipated, state.work = taken[last].tolist()
+    state.dissipated, state.work, slowed = taken[last].tolist()
+    state.slowed += int(slowed)
     state.force_evals += evals
     state.left_out = max(state.left_out, left_out)
     return Run(
-        t, x_frames, v_frames, energies_of, evals, diverged_at, None, record.name, state.left_out, 0, state
+        t, x_frames, v_frames, energies_of, evals, diverged_at, None, record.name, state.left_out, 0, int(slowed), state
     )  # fmt: skip
 
 

@@ -39,9 +39,8 @@ class State:
     force_evals: int = 0
     steps: int = 0
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
-    # Steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled; steps in which
-    # strands, or parts of a cloth, that touch were slowed down to keep them apart.
-    unsettled: int = 0
+    unsettled: int = 0  # steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled
+    slowed: int = 0  # steps in which parts that touch were slowed down, as impulses alone did not keep them apart
     lists: dict[str, NDArray[Any]] | None = dataclasses.field(default=None, repr=False)  # see `view_with_lists`
 
     @classmethod
@@ -194,7 +193,7 @@ def advance(
     p = view_of(system, h, driven)
     set_lag(system, state, integrator.lag * h, driven)
     # The sums continue from where they are, so that they do not depend on how the steps are shared out among the calls.
-    ledger = np.array([state.dissipated, state.work, state.unsettled])
+    ledger = np.array([state.dissipated, state.work, state.unsettled, state.slowed])
     if isinstance(system, Net) and system.bands > 1:
         set_threads(system.bands)
     most = max(1, int(POINT_EVALS / (system.evaluation_cost * integrator.evals)))
@@ -219,6 +218,7 @@ def advance(
         state.dissipated = float(ledger[0])
         state.work = float(ledger[1])
         state.unsettled = int(ledger[2])
+        state.slowed = int(ledger[3])
     if touches:
         state.lists = lists_of(p)
 

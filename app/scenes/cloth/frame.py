@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.springs.grab import GrabFrame
+from app.scenes.springs.net_motion import SolverReport
 from sim.springs.stability import Gauge
 
 
@@ -33,6 +34,4 @@ class ClothReadings(NamedTuple):
     note: str  # reason why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
     left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
-    # Steps, or kicks of explicit methods, since the start: the solver had not settled, or folds were slowed down
-    unsettled: int = 0
-    implicit_steps: int = 0  # of how many, with an implicit method
+    solver: SolverReport = SolverReport(0, 0, 0, implicit=False)

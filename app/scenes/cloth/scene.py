@@ -264,8 +264,7 @@ class ClothScene(NetScene[ClothParams]):
             corrections=self.motion.corrections,
             threads=self.tuner.threads,
             left_out=self.state.left_out,
-            unsettled=self.state.unsettled,
-            implicit_steps=self.state.steps if self.motion.method.implicit else 0,
+            solver=self.motion.solver_report(),
         )
 
     def frame(self) -> ClothFrame:

@@ -22,6 +22,7 @@ from app.scenes.cloth.start import corner, sphere_home
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.view import SecondNet, Sphere, SpringView
+from app.scenes.springs.speed_advice import solver_words
 from sim.springs.points.cells import faces
 
 CLOTH_COLOUR = (176, 58, 72)
@@ -70,16 +71,6 @@ def reach_of(params: ClothParams) -> np.ndarray:
 
 
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
-
-
-def unsettled_words(readings: ClothReadings, *, touches_itself: bool) -> str:
-    """The number of steps in which the solver had not settled, or folds were slowed down, and advice."""
-    what = "the solver had not settled"
-    if readings.implicit_steps:
-        steps = counted(readings.implicit_steps, "step")
-        return f"{what} in {number(readings.unsettled)} of {steps}: use a smaller time step"
-    folds = ", or folds that touch were slowed down," if touches_itself else ""
-    return f"{what}{folds} in {counted(readings.unsettled, 'kick')}"
 
 
 class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
@@ -178,8 +169,7 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         parts: list[Html] = []
         if readings.corrections:
             parts.append(fill("<div>{:.1f} corrections a step</div>", readings.corrections))
-        if readings.unsettled:
-            parts.append(fill("<div>{}</div>", unsettled_words(readings, touches_itself=p.thickness > 0.0)))
+        parts += [fill("<div>{}</div>", words) for words in solver_words(readings.solver, "folds")]
         if readings.left_out:
             parts.append(
                 fill("<div>too crowded: self-collision left out {}</div>", counted(readings.left_out, "particle"))

@@ -1,7 +1,7 @@
 """The motion of one spring network: of a rope, of a cloth, and of each rope of a race."""
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -18,6 +18,15 @@ from sim.springs.state import State, advance
 Bound: TypeAlias = Callable[[Net, State], float]  # net and state -> its largest reach [m]
 
 
+class SolverReport(NamedTuple):
+    """Steps since the method and the step were chosen, and failures in them."""
+
+    steps: int
+    unsettled: int  # of an implicit method: steps whose solver had not settled; of another: kicks
+    slowed: int  # steps in which parts that touch were slowed down to keep them apart
+    implicit: bool
+
+
 class NetMotion:
     """A spring network in motion: its last good state, its method and step, its bounds, and the cost of its steps."""
 
@@ -29,6 +38,7 @@ class NetMotion:
         self.max_reach = bound(net, self.state)  # [m] from the first particle, along an axis
         self.evals, self.corrections = float(method.evals), 0.0  # force evaluations, corrections a step
         self.counted = 0, 0  # force evaluations and steps at the last count
+        self.chosen_at = 0, 0, 0  # steps, unsettled ones and slowed ones, when method and step were chosen
 
     @property
     def integrator(self) -> str:
@@ -49,6 +59,7 @@ class NetMotion:
         self.method, self.step = method, step
         self.account.start_method(self.net, self.state)
         self.counted = self.state.force_evals, self.state.steps
+        self.chosen_at = self.state.steps, self.state.unsettled, self.state.slowed
 
     def change_net(self, net: Net, *, still_pins: bool = False) -> None:
         """Continue with another net, interpolated if its points are others. The change is work.
@@ -87,6 +98,12 @@ class NetMotion:
             self.evals = evals / steps
             self.corrections = max(0.0, self.evals - self.method.evals_outside_corrections)
         self.counted = self.state.force_evals, self.state.steps
+
+    def solver_report(self) -> SolverReport:
+        """The failures of this method since it was chosen."""
+        steps, unsettled, slowed = self.chosen_at
+        state, implicit = self.state, self.method.implicit
+        return SolverReport(state.steps - steps, state.unsettled - unsettled, state.slowed - slowed, implicit)
 
     def gauge(self, modes: list[Mode] | None = None, motion: Motion | None = None) -> Gauge:
         """The step and its limits in the present state. modes, motion: the fastest and the moved ones, if known."""

@@ -2,8 +2,9 @@
 
 import math
 
-from app.formats.formatting import longest_step, percent, time_step
+from app.formats.formatting import counted, longest_step, number, percent, time_step
 from app.scenes.springs.methods import method_name
+from app.scenes.springs.net_motion import SolverReport
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
@@ -26,6 +27,18 @@ def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_i
     if costs_more and gauge.step < CAUTION * longest:
         proposals.append(f"leapfrog instead of {method_name(integrator.name)}")
     return either(proposals)
+
+
+def solver_words(report: SolverReport, parts: str) -> list[str]:
+    """Sentences on the failures of a method. parts: name of the parts that touch."""
+    words, steps = [], counted(report.steps, "step")
+    if report.unsettled and report.implicit:
+        words.append(f"the solver had not settled in {number(report.unsettled)} of {steps}: use a smaller time step")
+    elif report.unsettled:
+        words.append(f"the solver had not settled in {counted(report.unsettled, 'kick')}")
+    if report.slowed:
+        words.append(f"{parts} that touch were slowed down in {number(report.slowed)} of {steps}, to keep them apart")
+    return words
 
 
 def either(proposals: list[str]) -> str:

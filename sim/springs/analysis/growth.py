@@ -40,7 +40,7 @@ def step_changes(integrator: Integrator, zeta: float, z: float) -> NDArray[np.co
     for start in ((1.0, 0.0), (0.0, 1.0)):
         x, v = np.zeros(6), np.zeros(6)
         x[1], v[1] = start
-        integrator.advance(x, v, np.zeros(3), 0.0, z, 1, p, False)
+        integrator.advance(x, v, np.zeros(4), 0.0, z, 1, p, False)
         columns.append((x[1] - start[0], v[1] - start[1]))
     return np.linalg.eigvals(np.array(columns).T).astype(np.complex128)
 
@@ -53,7 +53,7 @@ def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -
     """
     net = oscillator(zeta)
     p = net.kernel_view(z)
-    x, v, ledger = np.zeros(6), np.zeros(6), np.zeros(3)
+    x, v, ledger = np.zeros(6), np.zeros(6), np.zeros(4)
     x[1], v[3] = 1.0, 1.0
     steps, before, rate = 0, math.sqrt(2.0), 0.0
     while steps < most:
@@ -153,7 +153,7 @@ def step_growth(integrator: Integrator, net: Net, h: float, rest: NDArray[np.flo
             state = start.copy()
             state[pushed] += sign * by
             x, v = state[: rest.size], state[rest.size :]
-            integrator.advance(x, v, np.zeros(3), 0.0, h, 2, p, False)
+            integrator.advance(x, v, np.zeros(4), 0.0, h, 2, p, False)
             ends.append(np.concatenate([x[free], h * v[free]]))
         columns.append((ends[0] - ends[1]) / (2.0 * size))
     matrix = np.array(columns)

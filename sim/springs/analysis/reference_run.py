@@ -73,7 +73,7 @@ class ReferenceRun:
         p = net.kernel_view(FRICTION_STEP)
         times = np.array([t, t + duration])
         for run, finer in zip(self.runs, (1.0, 0.1), strict=True):
-            xs, vs, ledgers = np.empty((2, run[0].size)), np.empty((2, run[0].size)), np.zeros((2, 2))
+            xs, vs, ledgers = np.empty((2, run[0].size)), np.empty((2, run[0].size)), np.zeros((2, 3))
             assert METHOD.march is not None
             _, _, filled, _ = METHOD.march(*run, times, finer * RTOL, finer * ATOL, p, False, xs, vs, ledgers)
             raise_if_stopped()

@@ -6,7 +6,8 @@ To add one, write a module in this folder with
    (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at
    every time it evaluates forces, and returns how many force evaluations that took. With `with_account` it adds what
    damping took and what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order. An implicit one
-   counts in ledger[2] the steps that it took before the solver had settled.
+   counts in ledger[2] the steps that it took before the solver had settled. Each step ends with
+   `sim.springs.kicks.apart`, which counts in ledger[3] those in which it slowed down parts that touch.
 2. `stable_step(omega, rate)`: the largest stable step [s] of x'' + rate x' + omega^2 x = 0, with omega [rad/s] and
    rate [1/s] from 0 on, in closed form or from the largest step at which the method's amplification stays within 1.
    0 if no step is stable, inf if every step is.

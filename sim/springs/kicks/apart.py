@@ -307,7 +307,7 @@ def part_pairs(x, v, t, p, with_account, ledger):
             else:
                 shorten(x, v, p, np.full(p.rows * p.cols, 0.5))
     if slowed:
-        ledger[2] += 1.0
+        ledger[3] += 1.0
     if kept and with_account:
         ledger[0] += before - energy_of(x, v, t, p)
     return kept

@@ -64,7 +64,7 @@ def is_bounded(x):
 
 @kernel
 def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
-    """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
+    """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 3) at `times`, starting from x, v at the first.
 
     x, v are scratch afterwards. Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer
     frames than there are where no step was short enough, the state left any sane bound, or p.stop asked for an end.
@@ -74,7 +74,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     a, an = stages.k[:size], stages.k[method.stages * stages.stride :][:size]
     xn, vn = np.empty_like(x), np.empty_like(x)
     x_kept, v_kept, a_kept = np.empty_like(x), np.empty_like(x), np.empty_like(x)
-    spent, ledger, ledger_kept = np.zeros(3), np.zeros(2), np.zeros(2)
+    spent, ledger, ledger_kept = np.zeros(4), np.zeros(3), np.zeros(3)
     t, last = times[0], times[-1]
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, True, stages.f, stages.a)
@@ -97,7 +97,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
         landing = t + 1.01 * h >= goal
         blind = calm and not landing
         step = goal - t if landing else h
-        spent[0] = spent[1] = 0.0
+        spent[0] = spent[1] = spent[3] = 0.0
         take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_account)
         evals += method.stages
         error = before if blind else error_of(method, x, v, step, stages, xn, vn, rtol, atol)
@@ -123,6 +123,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
         evals += end_step(method, x, after, p, stages, xn, vn, with_account, spent)
         ledger[0] += spent[0]
         ledger[1] += spent[1]
+        ledger[2] += spent[3]
         while frame < len(times) and times[frame] <= after:
             if times[frame] == after:
                 for j in range(size):
@@ -130,7 +131,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
             else:
                 fill_frame(x, v, a, xn, vn, an, step, (times[frame] - t) / step, xs[frame], vs[frame])
                 set_pins(xs[frame], vs[frame], times[frame], p)
-            ledgers[frame, 0], ledgers[frame, 1] = ledger[0], ledger[1]
+            ledgers[frame, 0], ledgers[frame, 1], ledgers[frame, 2] = ledger[0], ledger[1], ledger[2]
             frame += 1
         # The old state's arrays become room for the next one or, before a step without an estimate, are kept.
         if blind:

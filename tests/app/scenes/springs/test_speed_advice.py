@@ -2,7 +2,8 @@
 
 import pytest
 
-from app.scenes.springs.speed_advice import accurate_steps, faster_steps, step_warnings
+from app.scenes.springs.net_motion import SolverReport
+from app.scenes.springs.speed_advice import accurate_steps, faster_steps, solver_words, step_warnings
 from sim.springs import INTEGRATORS
 from sim.springs.stability import Gauge
 
@@ -31,6 +32,19 @@ def test_only_what_holds_and_helps_is_proposed(name, h_omega, text):
 def test_a_cloth_is_faster_without_contact_with_itself():
     found = faster_steps(INTEGRATORS["leapfrog"], gauge_of("leapfrog", 1.5), "rows and columns", touches_itself=True)
     assert found == "fewer rows and columns or no self-collision"
+
+
+@pytest.mark.parametrize(
+    ("report", "words"),
+    [
+        ((50, 0, 0, True), []),
+        ((50, 7, 0, True), ["the solver had not settled in 7 of 50 steps: use a smaller time step"]),
+        ((50, 1, 0, False), ["the solver had not settled in 1 kick"]),
+        ((1, 0, 1, True), ["strands that touch were slowed down in 1 of 1 step, to keep them apart"]),
+    ],
+)
+def test_what_was_wrong_in_the_steps_is_said(report, words):
+    assert solver_words(SolverReport(*report), "strands") == words
 
 
 def test_a_run_without_a_page_is_warned_of_a_step_that_is_stable_but_not_right():

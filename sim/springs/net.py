@@ -258,14 +258,9 @@ class Net(PointSystem[Run]):
         return self.is_chain and self.thickness > 0.0
 
     def check_integrator(self, integrator: Integrator) -> None:
-        """Raises ValueError for a damped net and a method that allows no damping, and for a rope that touches itself
-        and an implicit method: its long steps would lead through a strand.
-        """
+        """Raises ValueError for a damped net and a method that allows no damping."""
         if integrator.undamped_only and self.is_damped:
             allowed = "a method with damping: this net is damped by links, drag or contact"
-            raise argument_error("integrator", integrator.name, allowed)
-        if integrator.implicit and self.is_strand:
-            allowed = "an explicit method, as this rope touches itself: implicit steps lead through its strands"
             raise argument_error("integrator", integrator.name, allowed)
 
     @property

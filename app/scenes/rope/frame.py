@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.grab import GrabFrame
+from app.scenes.springs.net_motion import SolverReport
 from sim.springs.stability import Gauge
 
 
@@ -40,3 +41,4 @@ class RopeReadings(NamedTuple):
     largest_stiffness: float  # in that parameter's unit
     note: str  # reason why another method runs than the one chosen, or ""
     cost: NumericalCost | None  # None for explicit methods
+    solver: SolverReport = SolverReport(0, 0, 0, implicit=False)

@@ -6,7 +6,6 @@ from typing import Any
 from app.scenes.groups import in_look, in_main, in_plots, in_rope, in_surroundings
 from app.scenes.springs.rope_parameters import SharedRopeParams, hidden_of_rope
 from sim.parameters import parameter
-from sim.springs import INTEGRATORS
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,19 +99,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 def hidden(params: RopeParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
-    names = hidden_of_rope(params, sphere=params.sphere, touches_itself=touches_itself(params))
+    names = hidden_of_rope(params, sphere=params.sphere, touches_itself=params.self_contact)
     if not params.sphere:
         names |= {"sphere_radius", "plot_along"}
-    if not may_touch_itself(params):
-        names.add("self_contact")
     return names
-
-
-def may_touch_itself(params: RopeParams) -> bool:
-    """False with implicit methods, whose long steps would lead through a strand."""
-    return params.integrator not in INTEGRATORS or not INTEGRATORS[params.integrator].implicit
-
-
-def touches_itself(params: RopeParams) -> bool:
-    """True if links push each other."""
-    return params.self_contact and may_touch_itself(params)

@@ -11,7 +11,7 @@ from app.messages import SceneCommand, StudentAnswer, Vector, vector_of
 from app.scenes.charts import Columns, CurveAxes, PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.parameters import RopeParams, touches_itself
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.start import root_home, start_points
 from app.scenes.springs.divergence import leapfrog_alternative
 from app.scenes.springs.grab import ParticleGrab
@@ -23,7 +23,7 @@ from app.scenes.springs.rope_handles import RopeHandles, grab_spring
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import INTEGRATORS, LAWS, Net, rope
+from sim.springs import LAWS, Net, rope
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.stability import critical_stiffness, top_modes
@@ -63,7 +63,7 @@ def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE, *, o
     of_tasks: only what the tasks' functions have: points that touch, one held root, equal masses.
     """
     ball = (*sphere, params.sphere_radius) if params.sphere else None
-    net = build_rope(params, root, ball, self_contact=touches_itself(params), of_tasks=of_tasks)
+    net = build_rope(params, root, ball, self_contact=params.self_contact, of_tasks=of_tasks)
     if params.start != "level":
         net = dataclasses.replace(net, x0=state_of(start_points(params, root)))
     if params.end_held and not of_tasks:
@@ -80,8 +80,7 @@ def warm_up(law: str = SPRING, *, touching: bool = False) -> Pieces:
     rope_of = functools.partial(rope, 4, law=law, radius=ROPE_RADIUS, self_contact=touching)
     net = rope_of(floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
     methods = integrator_pieces(net, rope_of(damping=0.0, drag=0.0))
-    allowed = {name: piece for name, piece in methods.items() if not (touching and INTEGRATORS[name].implicit)}
-    return {GAUGE: functools.partial(compile_gauge, law, touching), **allowed}
+    return {GAUGE: functools.partial(compile_gauge, law, touching), **methods}
 
 
 def pieces_of_touch(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -109,7 +108,7 @@ def needs(params: RopeParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = method_that_runs(params.integrator, params.time_step, lambda: build(small(params)))
     names = pieces_of_law((method, GAUGE), params.law)
-    return pieces_of_touch(names) if touches_itself(params) else names
+    return pieces_of_touch(names) if params.self_contact else names
 
 
 def small(params: RopeParams) -> RopeParams:
@@ -243,7 +242,8 @@ class RopeScene(NetScene[RopeParams]):
             largest *= self.net.families[0].rest
         cost = self.numerical_cost()
         readings = RopeReadings(motion.gauge(modes), parameter, largest, self.fallback_note, cost)
-        self.stability = self.recent.worst(self.state.t, readings)._replace(cost=cost)
+        solver = motion.solver_report()
+        self.stability = self.recent.worst(self.state.t, readings)._replace(cost=cost, solver=solver)
         self.assessed_at, self.assessed_x = self.state.t, self.state.x.copy()
 
     def numerical_cost(self) -> NumericalCost | None:

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from app.lab.process.rope_march import Segment
 from app.lab.student.live_net import ROPE
-from app.scenes.rope.parameters import RopeParams, touches_itself
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
@@ -50,7 +50,7 @@ def left_out(params: RopeParams) -> tuple[str, ...]:
         lines.append(
             "Sphere: only the points of both ropes touch it, as in sphere_force. A link passes a small sphere."
         )
-    if touches_itself(params):
+    if params.self_contact:
         lines.append("Touches itself: both ropes pass through themselves, as the tasks have no such force.")
     if params.end_held:
         lines.append("End held: the last point of both ropes is free, as in the tasks.")

@@ -12,7 +12,7 @@ from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.coloured_mesh import ColouredMesh
 from app.render.handles.viser_inside import set_arrays
-from app.render.markup.html import Html, bold, fill
+from app.render.markup.html import Html, bold, fill, join
 from app.render.meshes import ball, rod, tube_faces
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
@@ -22,9 +22,9 @@ from app.scenes.rope.start import root_home, start_points
 from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.drawing.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
 from app.scenes.springs.drawing.view import SecondNet, Sphere
-from app.scenes.springs.net_motion import rope_lengths
+from app.scenes.springs.net_motion import SolverReport, rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, build_rope
-from app.scenes.springs.speed_advice import held
+from app.scenes.springs.speed_advice import held, solver_words
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)
@@ -211,7 +211,7 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
                 "slack", "tension", f"{number(frame.full_scale)} N",
                 clipped=float(frame.tension.max()) > frame.full_scale,
             )  # fmt: skip
-        return cost_text(snapshot.readings.cost) + scale
+        return cost_text(snapshot.readings.cost) + solver_text(snapshot.readings.solver) + scale
 
     def marks(self, snapshot: RopeSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest value that is stable with the others as they are."""
@@ -255,6 +255,11 @@ def cost_text(cost: NumericalCost | None) -> Html:
         bold(f"{number(abs(energy))} J"),
         damping,
     )
+
+
+def solver_text(report: SolverReport) -> Html:
+    """The failures of the method, as HTML."""
+    return join([fill('<div style="margin-bottom:6px">{}</div>', words) for words in solver_words(report, "strands")])
 
 
 VIEW = RopeView

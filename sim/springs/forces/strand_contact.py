@@ -5,8 +5,7 @@ acts along the line between these places and goes to the ends of each link by it
 angular momentum stay. Where two links of a strand touch another at their common point, both push. The places of two
 parallel links may lie anywhere along their overlap: there the force is not continuous in the angle between them.
 
-Damping acts along the same line, and never pulls. Friction is a force of its own (`strand_friction`). Implicit methods
-refuse such a chain (`Net.check_integrator`), so that the force has no blocks of their matrix.
+Damping acts along the same line, and never pulls. Friction is a force of its own (`strand_friction`).
 """
 
 import math
@@ -14,7 +13,7 @@ import math
 from sim.jit import kernel
 from sim.springs.forces.contact import clipped_flow
 from sim.springs.forces.link_contact import add_at, mobility
-from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE
+from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import Force
 from sim.springs.near.near_pairs import are_neighbours, refresh_pairs
 from sim.springs.points.arrays import StrandArrays, span
@@ -255,7 +254,25 @@ def tangent(x, u, t, p, part, longest, out):
         add_force(out, n, pair.b + 1, r * fx + second * nx, r * fy + second * ny, r * fz + second * nz)
 
 
+@kernel(allocates=False)
+def blocks(x, v, t, g, p, points):
+    """g^2 k n n^T of touching pairs, and their damping, each place by itself.
+
+    Points of two strands have no block in common, so that a quasi-Newton method learns what pairs do together.
+    """
+    for i in range(set_touching(x, p)):
+        pair = touching_pair(x, p, i)
+        depth = depth_of(p, pair)
+        along = g * g * p.contact_k
+        if p.contact_k * depth > p.contact_b * rate_of(v, p.cols, pair):
+            along += g * p.contact_b
+        for e in range(2):
+            a, s = (pair.a, pair.s) if e == 0 else (pair.b, pair.t)
+            add_block(points, a, p.cols, (1.0 - s) * along, 0.0, pair.nx, pair.ny, pair.nz)
+            add_block(points, a + 1, p.cols, s * along, 0.0, pair.nx, pair.ny, pair.nz)
+
+
 FORCE = Force(
     "strand_contact", rank=31, nets=(StrandArrays,), accelerate=accelerate, damp=damp, energy=energy, power=power,
-    pins_power=pins_power, tangent=tangent, stores="contact",
+    pins_power=pins_power, tangent=tangent, blocks=blocks, stores="contact",
 )  # fmt: skip

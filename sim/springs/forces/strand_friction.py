@@ -6,6 +6,10 @@ solved together, pair by pair in sweeps to and fro (M. Jean 1999, The non-smooth
 until no force changes by more than SETTLED of the largest mu N, or after SWEEPS. A kick begins with the impulses of the
 one before in the same call, so that MORE_SWEEPS are enough, even in a tight knot.
 
+Implicit methods find by such sweeps the forces that hold a chain at rest at the start of a step. In the step each pair
+gets its force and what stops its places in the step, at most mu N: friction depends on velocities alone, as that of
+points does there.
+
 A chain has no torsion: the forces act at the nearest places of the links' axes, and the moment of their distance, which
 would twist the strands, is left out.
 """
@@ -14,6 +18,8 @@ import math
 
 from sim import point_laws
 from sim.jit import kernel
+from sim.springs.forces.friction import FIXED, NOTED
+from sim.springs.forces.matrices import add_block
 from sim.springs.forces.record import Force
 from sim.springs.forces.strand_contact import (
     add_opposite,
@@ -31,6 +37,7 @@ from sim.springs.points.order import in_turn
 SWEEPS = 50
 MORE_SWEEPS = 4
 SETTLED = 1e-6
+HELD = 1e-9  # the same of forces that hold through a step of an implicit method, where their error makes creep
 # Columns of p.rubs: the pair's places and normal as in `LinkPair`, mu N [N], its mobility [1/kg], the force on its
 # second link [N], and the impulse [N s].
 MOST, MOBILITY, FORCE_AT, IMPULSE_AT = 5, 6, 7, 10
@@ -83,7 +90,7 @@ def clear(p, count, column):
 
 
 @kernel(allocates=False)
-def sweep_forces(v, p, count, reverse, a):
+def sweep_forces(v, stop_rate, p, count, reverse, a):
     """One sweep of `accelerate`; returns the largest change of a force, squared."""
     n, largest = p.cols, 0.0
     for turn in range(count):
@@ -95,12 +102,84 @@ def sweep_forces(v, p, count, reverse, a):
         u, q, r = opening_of(v, n, pair)
         ax, ay, az = opening_of(a, n, pair)
         fx, fy, fz = w * p.rubs[i, FORCE_AT], w * p.rubs[i, FORCE_AT + 1], w * p.rubs[i, FORCE_AT + 2]
-        sx, sy, sz, part = stopping(
-            pair.nx, pair.ny, pair.nz, u, q, r, ax - fx, ay - fy, az - fz, most * w, p.stop_rate
-        )
+        sx, sy, sz, part = stopping(pair.nx, pair.ny, pair.nz, u, q, r, ax - fx, ay - fy, az - fz, most * w, stop_rate)
         share = -part / w
         largest = max(largest, change(a, p, i, pair, FORCE_AT, share * sx, share * sy, share * sz))
     return largest
+
+
+@kernel(inline=True)
+def number_of_last(p):
+    """Number of pairs that `keep` has last kept."""
+    return max(0, p.touching[p.touching.shape[0] - 1, 1])
+
+
+@kernel(inline=True)
+def first_in_last(p, i, first):
+    """Number, from `first` on, of the first pair kept whose first point is not before that of touching pair i.
+
+    The pairs of both lists are in the order of their first points.
+    """
+    number = number_of_last(p)
+    while first < number and p.last_rubs[first, 0] < p.touching[i, 0]:
+        first += 1
+    return first
+
+
+@kernel(inline=True)
+def number_in_last(p, i, first):
+    """Number of touching pair i among those kept, from `first_in_last` on; their count if it is not among them."""
+    a, b, last, count = p.touching[i, 0], p.touching[i, 1], p.last_rubs, number_of_last(p)
+    while first < count and last[first, 0] == a:
+        if last[first, 1] == b:
+            return first
+        first += 1
+    return count
+
+
+@kernel(allocates=False)
+def keep(p, count, column):
+    """Keep the impulses for the next kick, or the forces for the stages of an implicit step."""
+    for i in range(count):
+        row, last = p.rubs[i], p.last_rubs[i]
+        last[0], last[1] = p.touching[i, 0], p.touching[i, 1]
+        last[2], last[3], last[4] = row[column], row[column + 1], row[column + 2]
+    p.touching[p.touching.shape[0] - 1, 1] = count
+
+
+@kernel(inline=True)
+def stopping_with_noted(v, p, i, pair, first):
+    """`stopping` of touching pair i by the velocities v and the force that was kept for it."""
+    u, q, r = opening_of(v, p.cols, pair)
+    k, w = number_in_last(p, i, first), p.rubs[i, MOBILITY]
+    ax = ay = az = 0.0
+    if k < number_of_last(p):
+        last = p.last_rubs[k]
+        ax, ay, az = -w * last[2], -w * last[3], -w * last[4]
+    return stopping(pair.nx, pair.ny, pair.nz, u, q, r, ax, ay, az, p.rubs[i, MOST] * w, p.stop_rate)
+
+
+@kernel(allocates=False)
+def add_fixed(v, p, count, a):
+    """Add the friction of a stage of an implicit step: that against the forces which were kept, and the velocities."""
+    first = 0
+    for i in range(count):
+        w = p.rubs[i, MOBILITY]
+        if w == 0.0:
+            continue
+        pair = rubbing(p, i)
+        first = first_in_last(p, i, first)
+        sx, sy, sz, part = stopping_with_noted(v, p, i, pair, first)
+        share = -part / w
+        change(a, p, i, pair, FORCE_AT, share * sx, share * sy, share * sz)
+
+
+@kernel(allocates=False)
+def settle_forces(v, stop_rate, p, count, tolerance, a):
+    """Sweep until no force changes by more than this [N], or SWEEPS times."""
+    for sweep in range(SWEEPS):
+        if sweep_forces(v, stop_rate, p, count, sweep % 2 == 1, a) <= tolerance * tolerance:
+            break
 
 
 @kernel(allocates=False)
@@ -109,9 +188,33 @@ def accelerate(x, v, t, p, with_damping, f, a):
         return
     count, most = note(x, v, p)
     clear(p, count, FORCE_AT)
-    for sweep in range(SWEEPS):
-        if sweep_forces(v, p, count, sweep % 2 == 1, a) <= (SETTLED * most) ** 2:
-            break
+    if p.load_is[0] == FIXED:
+        add_fixed(v, p, count, a)
+        return
+    if p.load_is[0] == NOTED:
+        settle_forces(v, 0.0, p, count, HELD * most, a)
+        keep(p, count, FORCE_AT)
+    settle_forces(v, p.stop_rate, p, count, SETTLED * most, a)
+
+
+@kernel(allocates=False)
+def blocks(x, v, t, g, p, points):
+    """The secant of the force over the sliding speed, of each pair, as against its noted force.
+
+    Each place by itself, with the whole mass of the pair: the matrix resists no less than the forces do.
+    """
+    count, first = note(x, v, p)[0], 0
+    for i in range(count):
+        if p.rubs[i, MOBILITY] == 0.0:
+            continue
+        pair = rubbing(p, i)
+        first = first_in_last(p, i, first)
+        _, _, _, part = stopping_with_noted(v, p, i, pair, first)
+        across = g * p.stop_rate * part / p.rubs[i, MOBILITY]
+        for e in range(2):
+            a, s = (pair.a, pair.s) if e == 0 else (pair.b, pair.t)
+            add_block(points, a, p.cols, 0.0, (1.0 - s) * across, pair.nx, pair.ny, pair.nz)
+            add_block(points, a + 1, p.cols, 0.0, s * across, pair.nx, pair.ny, pair.nz)
 
 
 @kernel(allocates=False)
@@ -159,28 +262,13 @@ def pins_share(v, p, i, column):
     return row[column] * (ax - bx) + row[column + 1] * (ay - by) + row[column + 2] * (az - bz)
 
 
-@kernel(inline=True)
-def number_in_last(p, i, first, count):
-    """Number of touching pair i among those of the last kick from `first` on, `count` if it did not touch then.
-
-    The pairs of both lists are in the order of their first points.
-    """
-    a, b, last = p.touching[i, 0], p.touching[i, 1], p.last_rubs
-    while first < count and last[first, 0] == a:
-        if last[first, 1] == b:
-            return first
-        first += 1
-    return count
-
-
 @kernel(allocates=False)
 def begin_with_last(v, s, p, count):
     """Begin with the impulses of the last kick, each at most its pair's limit; returns False without such a kick."""
-    number, first = max(0, p.touching[p.touching.shape[0] - 1, 1]), 0
+    number, first = number_of_last(p), 0
     for i in range(count):
-        while first < number and p.last_rubs[first, 0] < p.touching[i, 0]:
-            first += 1
-        k = number_in_last(p, i, first, number)
+        first = first_in_last(p, i, first)
+        k = number_in_last(p, i, first)
         if k == number or p.rubs[i, MOBILITY] == 0.0:
             continue
         pair, last = rubbing(p, i), p.last_rubs[k]
@@ -189,16 +277,6 @@ def begin_with_last(v, s, p, count):
         part = limit / size if size > limit else 1.0
         change(v, p, i, pair, IMPULSE_AT, part * jx, part * jy, part * jz)
     return number > 0
-
-
-@kernel(allocates=False)
-def keep_impulses(p, count):
-    """Keep the impulses for the next kick."""
-    for i in range(count):
-        row, last = p.rubs[i], p.last_rubs[i]
-        last[0], last[1] = p.touching[i, 0], p.touching[i, 1]
-        last[2], last[3], last[4] = row[IMPULSE_AT], row[IMPULSE_AT + 1], row[IMPULSE_AT + 2]
-    p.touching[p.touching.shape[0] - 1, 1] = count
 
 
 @kernel(allocates=False)
@@ -213,7 +291,7 @@ def hold(x, v, t, s, p, foreseen):
     for sweep in range(sweeps):
         if sweep_impulses(v, s, p, count, foreseen, sweep % 2 == 1) <= (SETTLED * s * most) ** 2:
             break
-    keep_impulses(p, count)
+    keep(p, count, IMPULSE_AT)
     work = 0.0
     if p.pins.shape[0] > 0:
         for i in range(count):
@@ -236,5 +314,5 @@ def power(x, v, t, p, with_damping):
 
 FORCE = Force(
     "strand_friction", rank=990, nets=(StrandArrays,), acts="p.friction > 0.0 and not p.lab_contact",
-    accelerate=accelerate, foresee=foresee, hold=hold, power=power,
+    accelerate=accelerate, foresee=foresee, hold=hold, power=power, blocks=blocks,
 )  # fmt: skip

@@ -7,7 +7,8 @@ TR-BDF2. The residual r = M (v0 + g a - v) decides. A correction u takes it away
 A chain takes corrections by its own matrix until they are round-off. A net has settled if the error that its residual
 stands for is below `tolerance`, a fraction of the method's own error in this step. A step that has not settled after a
 number of corrections is split into halves, quarters, ..., unless its error is small or its parts are the finest;
-ledger[2] counts the steps with a part that was taken so.
+ledger[2] counts the steps with a part that was taken so. Each part ends with `sim.springs.kicks.apart`, as the steps of
+other methods do, so that it does not lead through a strand or a fold.
 
 The solver is the same for all methods, so it is compiled once for each kind of net. It is called at one place of the
 loop, so that it is inlined: a call would copy hundreds of numbers, a tenth of the time of a rope of ten points.
@@ -35,6 +36,7 @@ from sim.springs.integrators.implicit.correction import correct_net, correct_rop
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
 from sim.springs.integrators.implicit.quasi_newton import remember
 from sim.springs.integrators.implicit.tangent import dot
+from sim.springs.kicks.apart import keep_apart, remember_places
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.vector_ops import add_scaled, set_sum
@@ -285,6 +287,15 @@ def set_stage_start(x, v, a, g, x0, v0, vs):
         x0[j], v0[j], vs[j] = x[j] + g * v[j], v[j] + g * a[j], v[j]
 
 
+@kernel(inline=True)
+def end_part(x, v, xs, vs, t, p, with_account, ledger):
+    """Go from x, v to xs, vs at time t [s], before a strand or a fold passes another."""
+    remember_places(x, p, True)
+    for j in range(x.shape[0]):
+        x[j], v[j] = xs[j], vs[j]
+    keep_apart(x, v, t, p, with_account, ledger)
+
+
 @kernel
 def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
     """`advance` of an integrator, by the method EULER, MIDPOINT or TR_BDF2."""
@@ -294,7 +305,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
     xs, vs = np.empty_like(x), np.empty_like(x)
     evals = 0
     for s in range(steps):
-        done, size, all_settled = 0, finest, True
+        done, size, all_settled, slowed = 0, finest, True, ledger[3]
         # A step does not depend on earlier steps in the same call.
         forget_factors(work.solver, p)
         while done < finest:
@@ -353,13 +364,15 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                 add_power(xs, vs, then, p, True, g if method == TR_BDF2 else part, ledger)
             if scale != 1.0:
                 scale_motion(scale, x1, v1, p)
-            for j in range(x.shape[0]):
-                x[j], v[j] = (x1[j], v1[j]) if method == MIDPOINT else (xs[j], vs[j])
+            end_part(
+                x, v, x1 if method == MIDPOINT else xs, v1 if method == MIDPOINT else vs, after, p, with_account, ledger
+            )
             done += size
             all_settled = all_settled and part_settled
             if hardest <= most_of(p, limits) // 2 and done % (2 * size) == 0:
                 size *= 2
         if not all_settled:
             ledger[2] += 1.0
+        ledger[3] = min(ledger[3], slowed + 1.0)
     set_pins(x, v, t + steps * h, p)
     return evals

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from app.messages import GrabTo, Place, Release
-from app.scenes.rope.parameters import PRESETS, RopeParams, hidden, touches_itself
+from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import RopeScene, build, needs, warm_up, warm_up_on_use
 from app.scenes.rope.student_rope import left_out
+from app.scenes.rope.view import solver_text
 from app.scenes.springs.net_motion import rope_lengths
 from sim.parameters import check_record, parameters_of
-from sim.springs import INTEGRATORS
 from sim.springs.statics import hanging_chain
 from tests.sim.springs.kicks.knots import determinant
 
@@ -105,12 +105,23 @@ def test_a_held_end_is_at_rest_after_a_drag_and_in_a_resumed_run() -> None:
     assert points_of(scene)[last] == pytest.approx(before, abs=1e-9)
 
 
-def test_implicit_methods_do_not_touch_and_the_panel_does_not_offer_it() -> None:
-    for name, record in INTEGRATORS.items():
-        params = check_record(RopeParams, {"self_contact": True, "integrator": name})
-        assert touches_itself(params) == (not record.implicit)
-        assert ("self_contact" in hidden(params)) == record.implicit
-        assert (build(params).thickness > 0.0) == (not record.implicit)
+@pytest.mark.parametrize("name", ["implicit_euler", "tr_bdf2"])
+def test_a_knot_holds_at_the_step_of_a_frame_and_the_panel_counts_what_did_not_settle(name: str) -> None:
+    scene = scene_of("Knot", integrator=name, time_step=1 / 60)
+    run(scene, 0.5)
+    scene.handle(Place("root", (1.2, 0.0, 3.0)))
+    run(scene, 1.5)
+    assert determinant(points_of(scene)) == 3
+    scene.assess_stability()
+    report, cost = scene.stability.solver, scene.stability.cost
+    assert cost is not None
+    assert (report.steps, report.unsettled) == (120, scene.state.unsettled)
+    text = f"the solver had not settled in {report.unsettled} of 120 steps: use a smaller time step"
+    assert (text in solver_text(report)) is (report.unsettled > 0)
+    scene.change_forces(dataclasses.replace(scene.params, integrator="leapfrog", time_step=1 / 960))
+    run(scene, 0.1)
+    scene.assess_stability()
+    assert scene.stability.solver == (96, 0, 0, False)
 
 
 def test_beside_a_students_rope_only_what_the_tasks_have_is_there() -> None:

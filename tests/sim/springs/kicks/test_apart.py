@@ -13,7 +13,6 @@ from sim.validation import ApproximationWarning
 from tests.sim.springs.kicks.knots import DETERMINANTS, determinant, knotted_rope, pulled, spaced
 
 QUICK = "leapfrog", "dopri5"  # whose kernels other tests have compiled
-EXPLICIT = [name for name, record in INTEGRATORS.items() if not record.implicit]
 
 
 def volume(a, b, c):
@@ -61,7 +60,7 @@ def wild(seed, radius=0.02):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in EXPLICIT]
+    "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in INTEGRATORS]
 )
 @pytest.mark.parametrize("step", [1 / 60, 1 / 300])
 def test_no_link_passes_another_in_a_heap_that_is_torn_about(name, step):
@@ -136,10 +135,15 @@ def test_without_contact_with_itself_a_knot_is_lost_at_once():
 
 @pytest.mark.parametrize("name", DETERMINANTS)
 @pytest.mark.parametrize(("seconds", "runs"), [(2.0, 1), pytest.param(60.0, 100, marks=pytest.mark.stress)])
-def test_a_knot_stays_a_knot_while_a_hand_pulls_at_it(name, seconds, runs):
+@pytest.mark.parametrize(("method", "step"), [
+    ("leapfrog", 1 / 1000), ("tr_bdf2", 1 / 50), ("implicit_euler", 1 / 50),
+    pytest.param("tr_bdf2", 1 / 500, marks=pytest.mark.long),
+    pytest.param("implicit_midpoint", 1 / 100, marks=pytest.mark.long),
+])  # fmt: skip
+def test_a_knot_stays_a_knot_while_a_hand_pulls_at_it(name, seconds, runs, method, step):
     """At 10 m/s, in random directions, at random points; looked at ten times a second."""
     for seed in range(runs):
-        for state in pulled(knotted_rope(name), seed, seconds, 1 / 1000):
+        for state in pulled(knotted_rope(name), seed, seconds, step, method):
             assert determinant(state.x[:, 0].T) == DETERMINANTS[name]
 
 
@@ -148,3 +152,11 @@ def test_a_run_says_that_strands_were_slowed_down():
     net, v = wild(0, radius=0.045)
     with pytest.warns(ApproximationWarning, match="strands that touch were slowed down in [0-9]+ steps"):
         simulate(net, 0.5, 3, 1 / 30, "symplectic_euler", v=v[:, 0].T)
+
+
+def test_a_run_in_steps_of_its_own_says_so_too():
+    net, v = wild(0, radius=0.045)
+    with pytest.warns(ApproximationWarning, match="strands that touch were slowed down in 1 step, as"):
+        run = simulate(net, 0.5, 3, integrator="dopri5", rtol=1e-2, atol=1e-2, v=v[:, 0].T)
+    assert run.slowed == run.state.slowed == 1
+    assert run.unsettled == 0

@@ -14,6 +14,9 @@ Stable is not yet right. Beside the stable step stands the one up to which a met
 the oscillation of the motion that gravity causes (`sim.springs.analysis.accuracy`). That motion is one of a few smooth
 modes, as the net's weight in any direction moves them. What no spring holds swings as a pendulum of the net's size.
 
+A net that is about to land has stiffer modes when it has. `landed_modes` estimates them from the present ones. Contact
+of the net with itself counts as it is.
+
 Each link is given the stiffness it would have at the largest strain now present in the net: a slack line is about to be
 taut, and a wave carries the strain of one link of a stiffening rope to the others. Larger strains later need a shorter
 step.
@@ -54,10 +57,11 @@ from sim.springs.net import Net
 from sim.springs.points.line_arrays import LineArrays
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
-from sim.validation import check_positive
+from sim.validation import check_kind, check_positive
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 TOUCHING = 12  # equal spheres that can touch one of them
+SLIDING = (0.0, 0.5, 1.0)  # shares of a landed mode, of which the one with the shortest step limits
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SAME = 1.0 - 1e-6  # product of two unit vectors that are one
 ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
@@ -109,11 +113,17 @@ class Gauge(NamedTuple):
     accurate_step: float = math.nan  # [s] up to which the method is right; NaN: not assessed
     error: float = math.nan  # relative error of oscillation and damping at `step`; NaN: not assessed
     accurate_method: str = ""  # where the method is stable but not right: one that is both at `step`, or ""
+    landed_step: float = math.inf  # [s] estimate of the largest stable step in contact with floor or sphere
 
     @property
     def share(self) -> float:
         """The step over the largest stable one: above 1 the motion grows."""
         return self.step / self.critical_step if self.critical_step > 0.0 else math.inf
+
+    @property
+    def is_too_long_landed(self) -> bool:
+        """True if the step is stable now, but by estimate not where all points touch floor or sphere."""
+        return self.share <= 1.0 and self.step > self.landed_step
 
     @property
     def is_wrong(self) -> bool:
@@ -382,6 +392,34 @@ def step_limit(mode: Mode, integrator: Integrator) -> float:
     return min(h, free)
 
 
+def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
+    """Estimates of a net's top modes where all of its points touch floor or sphere.
+
+    modes: `top_modes` of a state. A contact adds to a mode's omega^2 and damping rate at most those of the lightest
+    point (Weyl's inequality); of what slides it adds friction instead. A light point that is hardly linked swings on
+    its contact alone. Empty without floor and sphere.
+    """
+    surfaces = max(net.floor is not None, (net.sphere is not None) * (2.0 if net.links_touch else 1.0))
+    lightest = float(net.inverse_masses().max(initial=0.0))
+    if not surfaces or lightest == 0.0:
+        return []
+    depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
+    stiffness = surfaces * lightest * net.contact.stiffness
+    rate = surfaces * lightest * net.contact.damping * depth
+    rubs = net.contact.friction > 0.0 and net.contact.law == "clipped"
+    landed = [Mode(stiffness, 0.0, rate)]
+    for mode in modes:
+        for slides in SLIDING if rubs else (0.0,):
+            held = 1.0 - slides
+            landed.append(
+                mode._replace(
+                    stiffness=mode.stiffness + held * stiffness, rate=mode.rate + held * rate,
+                    sliding=max(slides, mode.sliding),
+                )
+            )  # fmt: skip
+    return landed
+
+
 def modes_at(system: PointSystem, state: State | None) -> list[Mode]:
     """The `top_modes` of a state, None: of the start. Raises ValueError for a state of another system."""
     if state is None:
@@ -391,10 +429,13 @@ def modes_at(system: PointSystem, state: State | None) -> list[Mode]:
     return top_modes(system) if state is None else top_modes(system, state.x, state.t)
 
 
-def critical_step(system: PointSystem, integrator: str | Integrator, state: State | None = None) -> float:
+def critical_step(
+    system: PointSystem, integrator: str | Integrator, state: State | None = None, *, landed: bool = False
+) -> float:
     """The largest step [s] at which small disturbances of `state` do not grow.
 
-    system: a net or mooring lines. state: None: a net as it was built, or lines in their state of rest.
+    system: a net or mooring lines. state: None: a net as it was built, or lines in their state of rest. landed: True:
+    nor where all points of the net touch floor or sphere; an estimate (`landed_modes`).
     0 if every step is unstable (undamped explicit Euler), inf if none is. Raises ValueError for an unknown
     integrator, and ConvergenceError for lines without a state of rest.
 
@@ -402,8 +443,10 @@ def critical_step(system: PointSystem, integrator: str | Integrator, state: Stat
     >>> round(critical_step(rope(points=10, stiffness=800.0), "leapfrog"), 4)  # [s]
     0.0358
     """
-    record = integrator_named(integrator)
-    return min((step_limit(mode, record) for mode in modes_at(system, state)), default=math.inf)
+    record, modes = integrator_named(integrator), modes_at(system, state)
+    check_kind("landed", landed, bool, "True or False")
+    more = landed_modes(system, modes) if landed and isinstance(system, Net) else []
+    return min((step_limit(mode, record) for mode in modes + more), default=math.inf)
 
 
 def moved_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: float = 0.0) -> Motion:
@@ -590,7 +633,9 @@ def gauge(
     modes, motion: the `top_modes` and `moved_modes` of the state, if known.
     """
     modes = modes_at(net, state) if modes is None else modes
-    return gauge_of(modes, integrator_named(integrator), h, motion_at(net, state) if motion is None else motion)
+    motion, record = motion_at(net, state) if motion is None else motion, integrator_named(integrator)
+    landed = min((step_limit(mode, record) for mode in landed_modes(net, modes)), default=math.inf)
+    return gauge_of(modes, record, h, motion)._replace(landed_step=landed)
 
 
 def gauge_of(modes: list[Mode], record: Integrator, h: float, motion: Motion = STILL) -> Gauge:

@@ -127,7 +127,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Tablecloth": {
         "start": "level", "pinned": "free", "rows": 32, "cols": 32, "sphere": True, "sphere_radius": 0.5,
-        "thickness": 0.04, "bend": 3.0, "integrator": "symplectic_euler", "time_step": 1 / 1600, "damping": 0.01,
+        "thickness": 0.04, "bend": 3.0, "integrator": "symplectic_euler", "time_step": 1 / 1920, "damping": 0.01,
         "wind": 0.0, "full_strain": 2.0, "contact_stiffness": 60.0, "contact_damping": 0.08, "friction": 0.3,
     },
 }  # fmt: skip

@@ -188,10 +188,10 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
 
     def marks(self, snapshot: ClothSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step that is stable with the others as they are."""
-        readings = snapshot.readings
+        readings, gauge = snapshot.readings, snapshot.readings.stability
         return {
             "integrator": readings.note,
-            "time_step": step_mark(readings.stability.critical_step, readings.stability.accurate_step),
+            "time_step": step_mark(gauge.critical_step, gauge.accurate_step, gauge.landed_step),
         }
 
 

@@ -235,7 +235,7 @@ class RaceView(RopesView[RaceParams, RaceFrame, RaceReadings]):
     def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
         gauge = snapshot.readings.results[0].gauge
-        return {"time_step": step_mark(gauge.critical_step, gauge.accurate_step)}
+        return {"time_step": step_mark(gauge.critical_step, gauge.accurate_step, gauge.landed_step)}
 
     def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """The table of results."""

@@ -221,7 +221,11 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         text = f"limit {number(held(stiffness))} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
         if step == float("inf"):
             text = "every stiffness is stable"
-        return {"integrator": g.note, "time_step": step_mark(step, g.stability.accurate_step), g.parameter: text}
+        return {
+            "integrator": g.note,
+            "time_step": step_mark(step, g.stability.accurate_step, g.stability.landed_step),
+            g.parameter: text,
+        }
 
 
 def view_of_start(params: RopeParams) -> tuple[Vector, Vector]:

@@ -11,6 +11,7 @@ from app.formats.formatting import longest_step, number, percent, time_step
 from app.messages import LastFrame, vector_of
 from app.scenes.contract import Advice
 from app.scenes.springs.methods import method_name
+from app.scenes.springs.speed_advice import limit_text_landed
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
@@ -66,6 +67,8 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
         proposals = " or ".join(words for words in (holds, alternative) if words)
         over = f"{percent(gauge.share)} of the largest stable one" if gauge.critical_step > 0 else "too long"
         return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
+    if gauge.is_too_long_landed:
+        return f"{start} within the limit of {method} ({limit}), but too long {limit_text_landed(gauge)}."
     return (
         f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
         f"Try a time step of {longest_step(step / 4)}."
@@ -74,7 +77,8 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
 
 def short_divergence_text(t: float, gauge: Gauge) -> str:
     """Time [s] and cause of a divergence, for a table."""
-    cause = "its step is too long" if gauge.share > 1.0 else "an impact was too sudden for its step"
+    is_too_long = gauge.share > 1.0 or gauge.is_too_long_landed
+    cause = "its step is too long" if is_too_long else "an impact was too sudden for its step"
     return f"diverged at {t:.2f} s: {cause} ({limit_text(gauge)})"
 
 
@@ -88,7 +92,8 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
 
 def holding_step(step: float, gauge: Gauge) -> Advice | None:
     """A time step, 1/n with a round n, at which a diverged run would have been stable, or None."""
-    largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
+    limit = min(gauge.critical_step, gauge.landed_step)
+    largest = MARGIN * limit if step > limit else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
         return None
     rate = FIRST_RATE

@@ -65,14 +65,20 @@ def error_text(error: float) -> str:
     return f"{percent(error)} off" if error < 1.0 else "more than 100\u00a0% off"
 
 
+def limit_text_landed(gauge: Gauge) -> str:
+    """The estimate of the largest stable step in contact, in words."""
+    return f"in contact with floor or sphere, where about {longest_step(rounded_down(gauge.landed_step))} is stable"
+
+
 def step_warnings(integrator: Integrator, gauge: Gauge) -> list[str]:
-    """A sentence for a run without a page, if the step is stable but not right."""
-    if not gauge.is_wrong:
-        return []
-    return [
-        f"The time step of {time_step(gauge.step)} is stable with {method_name(integrator.name)} but not right: "
-        f"oscillation and damping are {error_text(gauge.error)}. {accurate_steps(gauge)}"
-    ]
+    """Sentences for a run without a page, if the step is stable but not right, or not stable in contact."""
+    start, words = f"The time step of {time_step(gauge.step)} is stable with {method_name(integrator.name)}", []
+    if gauge.is_wrong:
+        error = error_text(gauge.error)
+        words.append(f"{start} but not right: oscillation and damping are {error}. {accurate_steps(gauge)}")
+    if gauge.is_too_long_landed:
+        words.append(f"{start} now, but too long {limit_text_landed(gauge)}.")
+    return words
 
 
 def rounded_down(step: float) -> float:

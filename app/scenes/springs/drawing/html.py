@@ -11,13 +11,15 @@ from app.render.markup.html import (
     WRONG_COLOUR,
     Html,
     coloured,
+    escape,
     faint,
     fill,
     info,
+    join,
 )
 from app.scenes.springs.divergence import limit_text
 from app.scenes.springs.recent_gauges import SPAN
-from app.scenes.springs.speed_advice import accurate_steps, error_text, rounded_down
+from app.scenes.springs.speed_advice import accurate_steps, error_text, limit_text_landed, rounded_down
 from sim.springs.stability import TOLERANCE, Gauge
 
 STEP_INFO = (
@@ -26,6 +28,7 @@ STEP_INFO = (
     "frequency and decay of the motion that gravity causes are off by at most {}."
 )
 WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
+SAME = 0.95  # of the largest stable step, below which that in contact is another
 UNLIMITED = 2.0  # steps that are right, in the length of the bar of a method that is stable at every step
 
 
@@ -49,8 +52,16 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
         100.0 * min(used, 1.0) if used == used else 0.0,
         colour,
         wrong,
-        fill("<div>{}</div>", accurate_steps(gauge, briefly=True)) if gauge.is_wrong else "",
+        join(fill("<div>{}</div>", words) for words in verdicts(gauge)),
     )
+
+
+def verdicts(gauge: Gauge) -> list[Html]:
+    """Sentences on a stable step that is not right, or too long where the net touches something."""
+    words = [escape(accurate_steps(gauge, briefly=True))] if gauge.is_wrong else []
+    if gauge.is_too_long_landed:
+        words.append(coloured(f"Too long {limit_text_landed(gauge)}.", WARNING_COLOUR))
+    return words
 
 
 def verdict_colour(gauge: Gauge) -> str:
@@ -59,7 +70,7 @@ def verdict_colour(gauge: Gauge) -> str:
         return ERROR_COLOUR
     if gauge.is_wrong:
         return WRONG_COLOUR
-    return GOOD_COLOUR if gauge.share < WARNING_SHARE else WARNING_COLOUR
+    return WARNING_COLOUR if gauge.share >= WARNING_SHARE or gauge.is_too_long_landed else GOOD_COLOUR
 
 
 def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
@@ -82,12 +93,20 @@ def accuracy_text(gauge: Gauge, colour: str) -> Html:
     return fill(", right to {}", percent(TOLERANCE))
 
 
-def step_mark(critical_step: float, accurate_step: float = math.nan) -> str:
+def step_mark(critical_step: float, accurate_step: float = math.nan, landed_step: float = math.inf) -> str:
     """The line below the control of the time step.
 
     critical_step: the largest stable step [s], 0 or infinity too. accurate_step: the one up to which the method is
-    right [s]; NaN: not assessed.
+    right [s]; NaN: not assessed. landed_step: estimate of the largest stable one in contact with floor or sphere [s].
     """
+    landed = ""
+    if landed_step < SAME * critical_step:
+        landed = f"; in contact about {longest_step(rounded_down(landed_step))}"
+    return right_mark(critical_step, accurate_step) + landed
+
+
+def right_mark(critical_step: float, accurate_step: float) -> str:
+    """The part of `step_mark` on the steps that are stable now, and right."""
     if critical_step <= 0.0:
         return "no step is stable with this method"
     limit = (

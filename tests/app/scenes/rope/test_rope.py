@@ -18,12 +18,17 @@ from app.scenes.quantities import measured
 from app.scenes.rope import SCENE
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
-from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
+from app.scenes.springs.divergence import (
+    divergence_text,
+    holding_step,
+    leapfrog_alternative,
+    short_divergence_text,
+)
 from app.scenes.springs.drawing.html import stability_bar, step_mark
 from app.scenes.springs.drawing.ropes_view import bead_radius
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
-from app.scenes.springs.speed_advice import held
+from app.scenes.springs.speed_advice import held, step_warnings
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record, effect_of_change, parameters_of
@@ -431,6 +436,9 @@ def test_the_line_under_the_time_step_names_the_largest_that_is_stable() -> None
     assert step_mark(0.0123, 1 / 163) == "limit 1/82 s (12 ms), right up to 1/170 s (5.9 ms)"
     assert step_mark(math.inf, 1 / 163) == "every step is stable, right up to 1/170 s (5.9 ms)"
     assert step_mark(0.0123, 0.0) == "limit 1/82 s (12 ms), right at no step"
+    assert step_mark(0.0123, 0.0123, 0.0122) == step_mark(0.0123, 0.0123)
+    in_contact = "limit 1/82 s (12 ms), right below it; in contact about 1/170 s (5.9 ms)"
+    assert step_mark(0.0123, 0.0123, 1 / 163) == in_contact
 
 
 @pytest.mark.parametrize(
@@ -479,6 +487,25 @@ def test_of_an_unstable_step_nothing_else_is_said() -> None:
     bar = stability_bar(STEP_OF_1_MS._replace(step=3e-3, error=0.5, accurate_step=1e-3))
     assert share_and_verdict(bar) == "Step: 150 % of the largest stable"
     assert WRONG_COLOUR not in bar
+
+
+def test_a_step_that_is_too_long_only_in_contact_is_told_before_the_net_lands() -> None:
+    rk4, gauge = INTEGRATORS["rk4"], STEP_OF_1_MS._replace(landed_step=9.1e-4)
+    told = "in contact with floor or sphere, where about 1/1100 s (910 µs) is stable"
+    bar = stability_bar(gauge)
+    assert f"Too long {told}." in bar
+    assert WARNING_COLOUR in bar
+    assert GOOD_COLOUR not in bar
+    assert step_warnings(rk4, gauge) == [
+        f"The time step of 1/1000 s (1 ms) is stable with Runge-Kutta 4 now, but too long {told}."
+    ]
+    assert divergence_text(1.0, rk4, 1e-3, gauge, "").endswith(f"but too long {told}.")
+    assert "its step is too long" in short_divergence_text(1.0, gauge)
+    advice = holding_step(1e-3, gauge)
+    assert advice is not None
+    assert advice.value == 1 / 1920
+    for harmless in (STEP_OF_1_MS, STEP_OF_1_MS._replace(landed_step=1.1e-3), gauge._replace(critical_step=9.5e-4)):
+        assert told not in stability_bar(harmless)
 
 
 def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:

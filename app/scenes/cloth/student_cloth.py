@@ -11,7 +11,7 @@ from app.lab.student.live_net import CLOTH, LiveNet, Marched
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING
-from app.scenes.springs.student_net import StudentNet, forces_of
+from app.scenes.springs.student_net import Differences, StudentNet, forces_of
 from sim.springs import INTEGRATORS, Net
 from sim.springs.resampling import resample
 from sim.springs.stability import gershgorin
@@ -37,7 +37,7 @@ class StudentCloth(StudentNet):
 
     def set_up(self, params: ClothParams) -> bool:
         """Choose the points and their links. True if they have changed."""
-        self.params, self.unlike = params, unlike(params)
+        self.params, self.differences = params, Differences(unlike(params))
         rows, cols = params.rows, params.cols
         if not self.is_comparable:
             self.rows.clear()

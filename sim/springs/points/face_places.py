@@ -180,29 +180,27 @@ def push_on_face(v, p, place, with_damping):
     return FACE_PART * fx, FACE_PART * fy, FACE_PART * fz
 
 
-# Facets have no arguments of these names.
-LOOP = """    reach = face_reach(x, t, p)
-    if reach > 0.0:
-        for row_turn in range(p.rows - 1):
-            row = {row}
-            if row_distance(x, t, p, row) < reach:
-                for col_turn in range(p.cols - 1):
-                    col = {col}
-                    if cell_distance(x, t, p, row, col) < reach:
-                        cell = cell_at(p, row, col)
-                        for face_turn in range(FACES):
-                            place = place_on_face(x, t, p, cell, {face})
-                            if place.depth > 0.0:
-                                {within}"""
-IN_ORDER = {"row": "row_turn", "col": "col_turn", "face": "face_turn"}
-IN_TURN = {
-    "row": "in_turn(row_turn, p.rows - 1, reverse)", "col": "in_turn(col_turn, p.cols - 1, reverse)",
-    "face": "in_turn(face_turn, FACES, reverse)",
-}  # fmt: skip
-USED = {
-    "face_reach": face_reach, "row_distance": row_distance, "cell_distance": cell_distance, "cell_at": cell_at,
-    "place_on_face": place_on_face, "in_turn": in_turn, "FACES": FACES,
-}  # fmt: skip
+@kernel(allocates=False)
+def next_face(x, t, p, reach, turn, reverse):
+    """The next turn after the face that touches the sphere in this turn or the first one later, and its `FacePlace`.
+
+    The turn is -1 if no more faces touch. Each face of each cell has its turn, row by row. reach: of `face_reach`.
+    """
+    of_row = FACES * (p.cols - 1)
+    count = of_row * (p.rows - 1)
+    while turn < count:
+        number = in_turn(turn, count, reverse)
+        row, col, face = number // of_row, number % of_row // FACES, number % FACES
+        if turn % of_row == 0 and row_distance(x, t, p, row) >= reach:
+            turn += of_row
+        elif turn % FACES == 0 and cell_distance(x, t, p, row, col) >= reach:
+            turn += FACES
+        else:
+            turn += 1
+            place = place_on_face(x, t, p, cell_at(p, row, col), face)
+            if place.depth > 0.0:
+                return turn, place
+    return -1, FacePlace(0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def each_face(result: str = "nothing", *, noalias: bool = False) -> Callable[[Callable[..., Any]], Any]:
@@ -216,12 +214,20 @@ def each_face(result: str = "nothing", *, noalias: bool = False) -> Callable[[Ca
 
     def made(function: Callable[..., Any]) -> Any:
         names = list(inspect.signature(function).parameters)[1:]
-        arguments = ", ".join(names)
-        call = within.format(call=f"visit(place, {arguments})")
-        body = LOOP.format(within=call, **(IN_TURN if "reverse" in names else IN_ORDER))
-        source = f"def {function.__name__}_of_faces({arguments}):\n    {before}\n{body}\n    {after}"
+        arguments, order = ", ".join(names), "reverse" if "reverse" in names else "False"
+        lines = [
+            f"def {function.__name__}_of_faces({arguments}):",
+            f"    {before}",
+            "    reach, face_turn = face_reach(x, t, p), 0",
+            "    while reach > 0.0:",
+            f"        face_turn, place = next_face(x, t, p, reach, face_turn, {order})",
+            "        if face_turn < 0:",
+            "            break",
+            f"        {within.format(call=f'visit(place, {arguments})')}",
+            f"    {after}",
+        ]
         visit = kernel(function, noalias=noalias, inline=True)
-        names_of = {"visit": visit, **USED}
-        return generated(source, names_of, function.__module__, noalias=noalias, allocates=False)
+        used = {"visit": visit, "face_reach": face_reach, "next_face": next_face}
+        return generated("\n".join(lines), used, function.__module__, noalias=noalias, allocates=False)
 
     return made

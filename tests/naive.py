@@ -7,6 +7,7 @@ import numpy as np
 
 from sim.springs.laws.slack import Slack
 from sim.springs.laws.stiffening import Stiffening
+from sim.springs.points.cells import faces
 
 
 def neighbours(net):
@@ -82,6 +83,42 @@ def link_touches(net, xs, vs, t):
             yield a, b, s, contact_force(net, depth, normal, slip, True), net.contact.stiffness * depth * normal, slip
 
 
+def nearest_on_face(corners, centre):
+    """Parts (3,) of the place of a triangle that is nearest to the centre: on its plane, if inside, or on a side."""
+    first, *others = corners
+    sides = np.column_stack([one - first for one in others])
+    inner = np.linalg.lstsq(sides, centre - first)[0]
+    if (inner >= 0.0).all() and inner.sum() <= 1.0:
+        return np.array([1.0 - inner.sum(), *inner])
+    found = []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        s = nearest_part(corners[i], corners[j], centre)
+        parts = np.zeros(3)
+        parts[i], parts[j] = 1.0 - s, s
+        found.append(parts)
+    return min(found, key=lambda parts: np.linalg.norm(parts @ corners - centre))
+
+
+def face_touches(net, xs, vs, t):
+    """(corners, parts, force, elastic force, slip) of every face of a cloth that touches the sphere.
+
+    Faces touch one that is smaller by a twentieth of the radius, half as stiff as a point.
+    """
+    if not net.faces_touch:
+        return
+    rows, cols = net.shape
+    centre = np.array(net.sphere[:3]) + (t - net.epoch) * np.array(net.sphere_velocity)
+    for corners in faces(rows, cols):
+        corners = [divmod(int(corner), cols) for corner in corners]
+        parts = nearest_on_face(np.array([xs[corner] for corner in corners]), centre)
+        place, motion = (sum(s * y[c] for s, c in zip(parts, corners, strict=True)) for y in (xs, vs))
+        for depth, normal, velocity, _ in on_sphere(net, place, t):
+            depth -= 0.05 * (net.sphere[3] + net.radius)
+            if depth > 0.0:
+                force = 0.5 * contact_force(net, depth, normal, motion - velocity, True)
+                yield corners, parts, force, 0.5 * net.contact.stiffness * depth * normal, motion - velocity
+
+
 def contact_force(net, depth, normal, vr, on_sphere):
     """Force [N] on a touching point that moves at vr relative to the surface, without friction."""
     law = net.contact
@@ -92,17 +129,27 @@ def contact_force(net, depth, normal, vr, on_sphere):
 
 
 def loads(net, xs, vs, t):
-    """{(i, j): [(force, surface velocity)]} of the points that floor and sphere press, by their links too."""
+    """{(i, j): [(force, surface velocity)]} of the points that floor and sphere press, by their links or faces too."""
     found = {}
     for i, j in itertools.product(*map(range, net.shape)):
         found[i, j] = [
             (contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere), velocity)
             for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t)
+            if not (on_sphere and net.faces_touch)
         ]
     shares = {}
     for a, b, s, force, _, _ in link_touches(net, xs, vs, t):
         for end, share in ((a, 1.0 - s), (b, s)):
             shares[end] = shares.get(end, 0.0) + share * force
+    for corners, parts, force, _, _ in face_touches(net, xs, vs, t):
+        for corner, part in zip(corners, parts, strict=True):
+            if part > 1e-14:
+                shares[corner] = shares.get(corner, 0.0) + part * force
+    if net.faces_touch:  # one force of the sphere on a point, with its own
+        for i, j in itertools.product(*map(range, net.shape)):
+            for depth, normal, velocity, _ in on_sphere(net, xs[i, j], t):
+                own = contact_force(net, depth, normal, vs[i, j] - velocity, True)
+                shares[i, j] = shares.get((i, j), 0.0) + own
     for end, force in shares.items():
         found[end].append((force, np.array(net.sphere_velocity)))
     return found

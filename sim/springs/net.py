@@ -28,6 +28,7 @@ from sim.springs.points.arrays import (
     TouchArrays,
     WideArrays,
 )
+from sim.springs.points.face_places import FACE_DEPTH
 from sim.springs.points.line_arrays import record_of
 from sim.springs.points.point_system import PointSystem
 from sim.springs.run import Run
@@ -67,18 +68,20 @@ class Family(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Penalty contact with floor and sphere, of points and of a rope's links.
+    """Penalty contact with floor and sphere, of points, of a rope's links and of a cloth's faces.
 
     law "clipped": normal force max(0, k depth - b v_n), which never pulls (Schwager & Poeschel, cond-mat/0701278),
     and Coulomb friction. law "lab": the original's k depth n - b v, with the whole velocity and while separating,
     so that surfaces are sticky and viscous; its sphere scales b by the depth.
     """
 
-    stiffness: float = 800.0  # [N/m] per point or link
-    damping: float = 5.0  # [N s/m] per point or link
+    stiffness: float = 800.0  # [N/m] per point or link, half of it per face
+    damping: float = 5.0  # [N s/m] likewise
     friction: float = 0.0  # Coulomb coefficient, law "clipped" only
     law: str = "clipped"
-    links: bool = True  # with "clipped", a rope's links touch the sphere as capsules of its radius; False: its points
+    # With "clipped", a rope's links touch the sphere as capsules of its radius, and a cloth's faces beside its points;
+    # False: points alone.
+    links: bool = True
 
 
 PLAIN_CONTACT = Contact()
@@ -224,8 +227,12 @@ class Net(PointSystem[Run]):
     @property
     def links_touch(self) -> bool:
         """True if the links touch the sphere, else the points do."""
-        has_links = self.is_chain and self.x0[0].size > 1
-        return has_links and self.sphere is not None and self.contact.links and self.contact.law == "clipped"
+        return self.is_chain and self.x0[0].size > 1 and touches_between_points(self)
+
+    @property
+    def faces_touch(self) -> bool:
+        """True if the faces touch the sphere, beside the points."""
+        return min(self.shape) > 1 and touches_between_points(self)
 
     @property
     def is_damped(self) -> bool:
@@ -311,8 +318,7 @@ class Net(PointSystem[Run]):
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, except those that kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
         if view.held.size:
-            held, load = np.zeros_like(view.held), np.zeros_like(view.load)
-            view = view._replace(held=held, load=load, load_is=np.zeros_like(view.load_is))
+            view = cleared(view, "held", "load", "load_is", *(() if self.is_chain else ("pressed",)))
         if self.thickness == 0.0:
             return view
         pairs, seen, nearest = np.empty_like(view.pairs), np.zeros_like(view.seen), np.zeros_like(view.nearest)
@@ -398,12 +404,29 @@ class Net(PointSystem[Run]):
             side=self.side_ratio,
             ends=ends,
             links=links,
-            **components("wind_", air.wind),
+            **components("wind_", air.wind) | face_arrays(self),
         )
         grid = GridArrays(*view, *touch, *wide)
         if [f[:2] for f in self.families] != CLOTH:
             return grid
         return ClothArrays(*grid, np.zeros_like(touch.seen), np.zeros(12), **cell_arrays(self))
+
+
+def touches_between_points(net: Net) -> bool:
+    """True if the contact is one by which places between the points touch the sphere, too."""
+    return net.sphere is not None and net.contact.links and net.contact.law == "clipped"
+
+
+def cleared(view: Any, *names: str) -> Any:
+    """The kernels' record with zeros of its own for these arrays."""
+    return view._replace(**{name: np.zeros_like(getattr(view, name)) for name in names})
+
+
+def face_arrays(net: Net) -> dict[str, Any]:
+    """Fields of `WideArrays` for the contact of faces."""
+    radius = net.radius + (net.sphere[3] if net.sphere is not None else 0.0)
+    size = 4 * net.x0[0].size if net.faces_touch and net.contact.friction > 0.0 else 0
+    return {"face_depth": FACE_DEPTH * radius, "pressed": np.zeros(size)}
 
 
 def rub_arrays(net: Net) -> dict[str, Any]:

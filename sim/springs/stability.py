@@ -54,6 +54,8 @@ from sim.springs.integrators.implicit.tangent import (
 from sim.springs.laws import largest_stiffness
 from sim.springs.near.near_pairs import count_touching
 from sim.springs.net import Net
+from sim.springs.points.cells import faces
+from sim.springs.points.face_places import FACE_PART
 from sim.springs.points.line_arrays import LineArrays
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
@@ -61,7 +63,7 @@ from sim.validation import check_kind, check_positive
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 TOUCHING = 12  # equal spheres that can touch one of them
-SLIDING = (0.0, 0.5, 1.0)  # shares of a landed mode, of which the one with the shortest step limits
+SLIDING = (0.0, 0.5, 1.0)  # shares of a landed mode; the shortest of their steps limits
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SAME = 1.0 - 1e-6  # product of two unit vectors that are one
 ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
@@ -151,7 +153,7 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m_i and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m_i,
     the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
     touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out, and the
-    motion of the place at which a turning link touches the sphere.
+    motion of the place at which a turning link or face touches the sphere.
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
@@ -165,8 +167,10 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
             damping[end] += 2.0 * f.damping * ratios
     # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
     depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
-    # A point between two links that touch the sphere has the force of both.
+    # A point between links or faces that touch the sphere has the force of all.
     on_sphere = (net.sphere is not None) * (2.0 if net.links_touch else 1.0)
+    if net.faces_touch:
+        on_sphere += FACE_PART * np.bincount(faces(rows, cols).ravel(), minlength=rows * cols).reshape(rows, cols)
     damping += net.drag + ((net.floor is not None) + on_sphere * depth) * net.contact.damping
     stiffness += ((net.floor is not None) + on_sphere) * net.contact.stiffness
     if net.thickness > 0.0:
@@ -397,7 +401,8 @@ def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
 
     modes: `top_modes` of a state. A contact adds to a mode's omega^2 and damping rate at most those of the lightest
     point (Weyl's inequality); of what slides it adds friction instead. A light point that is hardly linked swings on
-    its contact alone. Empty without floor and sphere.
+    its contact alone. Faces of a cloth, which a small sphere touches between its points, are left out. Empty without
+    floor and sphere.
     """
     surfaces = max(net.floor is not None, (net.sphere is not None) * (2.0 if net.links_touch else 1.0))
     lightest = float(net.inverse_masses().max(initial=0.0))

@@ -129,10 +129,14 @@ class ClothScene(NetScene[ClothParams]):
         """True if the energy account is kept: always, except for large cloths with the plot of losses closed."""
         return self.params.plot_losses or self.particles <= MAX_ACCOUNTED_PARTICLES
 
+    def build(self, params: ClothParams, sphere: Vector) -> Net:
+        """The net that the parameters describe; beside a student's, only its points touch the sphere."""
+        return build(params, sphere, of_tasks=self.student is not None)
+
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the parameters start them."""
         self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
-        self.place_at_rest(build(self.params, self.sphere.position), cloth_bound)
+        self.place_at_rest(self.build(self.params, self.sphere.position), cloth_bound)
         self.account_kept = self.with_account
         self.grab.clear()
         self.pins = Pins(self.net, self.state)
@@ -153,7 +157,7 @@ class ClothScene(NetScene[ClothParams]):
         """Take new parameters. The motion continues, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
-        net = build(params, self.sphere_at(self.state.t))
+        net = self.build(params, self.sphere_at(self.state.t))
         other_pins = (net.shape, net.pinned) != (self.net.shape, self.net.pinned)
         self.take_net(net, still_pins=other_pins)
         if other_pins:

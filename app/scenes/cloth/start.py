@@ -29,8 +29,11 @@ def sphere_home(params: ClothParams) -> Vector:
     return 0.0, -params.sphere_radius - 0.5, 1.2
 
 
-def build(params: ClothParams, sphere: Vector) -> Net:
-    """The net that the parameters describe, at its start. sphere: centre [m]."""
+def build(params: ClothParams, sphere: Vector, *, of_tasks: bool = False) -> Net:
+    """The net that the parameters describe, at its start. sphere: centre [m].
+
+    of_tasks: only points touch the sphere, as in the tasks' functions.
+    """
     net = cloth(
         params.rows,
         params.cols,
@@ -46,7 +49,7 @@ def build(params: ClothParams, sphere: Vector) -> Net:
         pinned=params.pinned,
         floor=0.0 if params.floor else None,
         sphere=(*sphere, params.sphere_radius) if params.sphere else None,
-        contact=Contact(params.contact_stiffness, params.contact_damping, params.friction),
+        contact=Contact(params.contact_stiffness, params.contact_damping, params.friction, links=not of_tasks),
         radius=CONTACT_DISTANCE,
         law=params.law,
         air=Air(density=params.air) if params.air > 0.0 else None,

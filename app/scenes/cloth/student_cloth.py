@@ -11,7 +11,7 @@ from app.lab.student.live_net import CLOTH, LiveNet, Marched
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING
-from app.scenes.springs.student_net import StudentNet, forces_of
+from app.scenes.springs.student_net import Differences, StudentNet, forces_of
 from sim.springs import INTEGRATORS, Net
 from sim.springs.resampling import resample
 from sim.springs.stability import gershgorin
@@ -37,7 +37,7 @@ class StudentCloth(StudentNet):
 
     def set_up(self, params: ClothParams) -> bool:
         """Choose the points and their links. True if they have changed."""
-        self.params, self.unlike = params, unlike(params)
+        self.params, self.differences = params, Differences(unlike(params), left_out(params))
         rows, cols = params.rows, params.cols
         if not self.is_comparable:
             self.rows.clear()
@@ -45,7 +45,7 @@ class StudentCloth(StudentNet):
             # Without pleats, which a coarse cloth does not resolve: as wide as the pleated one.
             width = params.width * (params.gather if params.start == "hanging" else 1.0)
             params = dataclasses.replace(params, rows=rows, cols=cols, width=width, gather=1.0, thickness=0.0)
-        self.net = build(params, sphere_home(params))
+        self.net = build(params, sphere_home(params), of_tasks=True)
         across, down, shear, _, bend, _ = self.net.families
         pins = tuple(i * cols + j for i, j in sorted(self.net.pinned))
         before = self.sheet
@@ -137,3 +137,10 @@ def unlike(params: ClothParams) -> tuple[str, ...]:
     if params.thickness > 0.0:
         lines.append("Self-collision distance: the points of your cloth do not push each other.")
     return tuple(lines)
+
+
+def left_out(params: ClothParams) -> tuple[str, ...]:
+    """The effects that the program's cloth leaves out beside a student's, as the tasks do, a line each."""
+    if not params.sphere:
+        return ()
+    return ("Sphere: only the points of both cloths touch it, as in the tasks. A small sphere passes between them.",)

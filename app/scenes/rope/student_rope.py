@@ -7,7 +7,7 @@ from app.lab.process.rope_march import Segment
 from app.lab.student.live_net import ROPE
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.laws import SPRING
-from app.scenes.springs.student_net import StudentNet, forces_of
+from app.scenes.springs.student_net import Differences, StudentNet, forces_of
 from sim.springs import Net
 
 
@@ -18,7 +18,7 @@ class StudentRope(StudentNet):
         self, net: Net, start: float, steps: int, params: RopeParams, x: NDArray[np.float64], v: NDArray[np.float64]
     ) -> None:
         """The program's rope has taken steps from time `start` [s], and is at x with velocities v, shape (n, 3)."""
-        self.unlike, self.left_out = unlike(params), left_out(params)
+        self.differences = Differences(unlike(params), left_out(params))
         path = np.array([path.coefficients for _, path in net.pin_paths]).reshape(-1, 4, 3)
         segment = Segment(steps, params.time_step, forces_of(net, start), path)
         self.follow(segment, start + steps * params.time_step, params.integrator, x, v)

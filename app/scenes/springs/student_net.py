@@ -7,6 +7,7 @@ both at the moment that the student's has reached, so that what differs is the n
 import collections
 import math
 import queue
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +24,18 @@ MAX_ROWS = 600  # kept of the course of the difference
 MAX_PART = 16  # steps of a job at least: a slow function must not seem endless where a slow machine catches up
 
 
+class Differences(NamedTuple):
+    """Lines of `StudentReport`, with the parameters as they are."""
+
+    unlike: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+
 class StudentNet:
     """Used by a scene on the simulation thread."""
 
     sheet: ClothData | None = None  # data of a cloth; None for a rope
-    unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
-    left_out: tuple[str, ...] = ()
+    differences = Differences()
 
     def __init__(self, live: LiveNet) -> None:
         self.live = live
@@ -124,8 +131,8 @@ class StudentNet:
         self.v, self.left = march.v, left
         table = np.array(self.rows).reshape(-1, 2)
         self.live.report = self.live.report._replace(
-            version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method, unlike=self.unlike,
-            left_out=self.left_out, sphere=any(segment.forces.sr > 0.0 for segment in segments),
+            version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method,
+            **self.differences._asdict(), sphere=any(segment.forces.sr > 0.0 for segment in segments),
             seconds=march.step_time, step=segments[-1].h,
             behind=sum(segment.steps * segment.h for segment in self.waiting),
             left_at=self.time if left else math.nan,

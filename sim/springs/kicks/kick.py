@@ -4,8 +4,9 @@ Damping is taken apart from the other forces only where h times its rate is smal
 decay of each, which is quick. A splitting is right only there. With y the rate of a stiff part times h, its steady
 speed is wrong by y^2/12 (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping: links and
 drag in one system (`sim.springs.kicks.formula`), drag alone exactly. Which of these it is depends on the net and the
-step alone, so that it is the same in every call. The normal damping of floor and sphere, and of a rope's contact with
-itself, is inside the kick of each point, link or pair; it is taken apart only where links and drag are one system.
+step alone, so that it is the same in every call. The normal damping of points and links on floor and sphere, and of a
+rope's contact with itself, is inside the kick of each point, link or pair; it is taken apart only where links and drag
+are one system. That of a cloth's faces and of its contact with itself is always taken apart.
 """
 
 from typing import Any, NamedTuple

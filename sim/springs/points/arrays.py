@@ -114,6 +114,10 @@ class WideArrays(NamedTuple):
     """Further kernel data of nets that are no chains."""
 
     has_air: bool
+    faces_touch: bool  # the faces touch the sphere, beside the points
+    face_depth: float  # [m] below the sphere's surface, where faces meet it
+    # (4, rows cols): force of the sphere on each point [N], and 1 where it is touched, flat; (0,) without friction
+    pressed: NDArray[np.float64]
     wind_x: float  # [m/s]
     wind_y: float
     wind_z: float

@@ -78,8 +78,15 @@ def two_edges(first, e, second, f):
 
 
 @kernel(inline=True)
-def point_and_face(point, cell, f):
-    """The `Four` of a particle and face f of a cell, as `faces` has it."""
+def face_corners(cell, f):
+    """The particles of face f of a cell, as `faces` has it."""
     if cell.is_odd:
-        return Four(True, point, cell.a, cell.b if f == 0 else cell.d, cell.d if f == 0 else cell.c)
-    return Four(True, point, cell.a if f == 0 else cell.b, cell.b if f == 0 else cell.d, cell.c)
+        return cell.a, cell.b if f == 0 else cell.d, cell.d if f == 0 else cell.c
+    return cell.a if f == 0 else cell.b, cell.b if f == 0 else cell.d, cell.c
+
+
+@kernel(inline=True)
+def point_and_face(point, cell, f):
+    """The `Four` of a particle and face f of a cell."""
+    b, c, d = face_corners(cell, f)
+    return Four(True, point, b, c, d)

@@ -14,6 +14,7 @@ import numpy as np
 from sim.jit import generated, kernel
 from sim.springs.points.arrays import by_net
 from sim.springs.points.each_link import LOOPS
+from sim.springs.points.face_places import each_face, face_reach, push_on_face
 from sim.springs.points.link_places import links_near, place_on_link, push_on_link, sphere_gap, touching
 
 
@@ -32,7 +33,7 @@ class Touch(NamedTuple):
 
 
 class Load(NamedTuple):
-    """A point that a surface presses, by itself or through its share of the forces on its links."""
+    """A point that a surface presses, by itself or through its share of the forces on its links or faces."""
 
     j: int
     on_sphere: bool  # else by the floor
@@ -91,14 +92,48 @@ def load_of(touch, v, n, p, with_damping):
 
 @kernel(inline=True)
 def sphere_load(j, gx, gy, gz, p):
-    """The `Load` of a point whose links pass on the force (gx, gy, gz) [N] of the sphere."""
+    """The `Load` of a point on which the sphere acts by the force (gx, gy, gz) [N], of links and faces too."""
     push = math.sqrt(gx * gx + gy * gy + gz * gz)
     scale = 1.0 / push if push > 0.0 else 0.0
     return Load(j, True, push, scale * gx, scale * gy, scale * gz, p.svx, p.svy, p.svz)
 
 
+@kernel(inline=True)
+def add_pressed(p, j, part, fx, fy, fz):
+    """Add a part of a force [N] of the sphere to that on point j."""
+    if part > 0.0:
+        n = p.rows * p.cols
+        p.pressed[j] += part * fx
+        p.pressed[n + j] += part * fy
+        p.pressed[2 * n + j] += part * fz
+        p.pressed[3 * n + j] = 1.0
+
+
+@each_face()
+def press_faces(place, x, v, t, p, with_damping):
+    fx, fy, fz = push_on_face(v, p, place, with_damping)
+    add_pressed(p, place.a, place.wa, fx, fy, fz)
+    add_pressed(p, place.b, place.wb, fx, fy, fz)
+    add_pressed(p, place.c, place.wc, fx, fy, fz)
+
+
+@kernel(allocates=False)
+def press(x, v, t, p, with_damping):
+    """Set p.pressed to the forces of the sphere on the points, by themselves and through their faces."""
+    n = p.rows * p.cols
+    for i in range(4 * n):
+        p.pressed[i] = 0.0
+    for j in range(n):
+        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, True)
+        if depth > 0.0:
+            load = load_of(Touch(j, True, depth, nx, ny, nz, p.svx, p.svy, p.svz), v, n, p, with_damping)
+            add_pressed(p, j, load.push, nx, ny, nz)
+            p.pressed[3 * n + j] = 1.0
+    press_faces(x, v, t, p, with_damping)
+
+
 SURFACE = """
-    if touches(x, t, p, {surface}):
+    if {only}touches(x, t, p, {surface}):
         su, sv, sw = surface_velocity(p, {surface})
         for j in range(n):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, {surface})
@@ -122,12 +157,23 @@ LINKS = """
                     is_loaded = is_touched = True
             if is_loaded:
                 {within}"""
+# Each force on a face is shared by the place of contact, too, so that it is summed over the faces of a point first.
+FACES = """
+    by_faces = face_reach(x, t, p) > 0.0
+    if by_faces:
+        press(x, {velocities}, t, p, {with_damping})
+        for j in range(n):
+            if p.pressed[3 * n + j] > 0.0:
+                gx, gy, gz = p.pressed[j], p.pressed[n + j], p.pressed[2 * n + j]
+                {within}"""
 TOUCH = "Touch(j, {surface}, depth, nx, ny, nz, su, sv, sw)"
 LOAD_OF_POINT = f"load_of({TOUCH}, {{velocities}}, n, p, {{with_damping}})"
-LOAD_BY_LINKS = "sphere_load(j, gx, gy, gz, p)"
+LOAD_OF_SPHERE = "sphere_load(j, gx, gy, gz, p)"
+ALONE = "not by_faces and "
 NAMES = {
     "Touch": Touch, "touches": touches, "touching": touching, "surface_velocity": surface_velocity, "load_of": load_of,
     "links_near": links_near, "place_on_link": place_on_link, "push_on_link": push_on_link, "sphere_load": sphere_load,
+    "face_reach": face_reach, "press": press,
 }  # fmt: skip
 
 
@@ -154,14 +200,14 @@ def each_contact(result: str = "nothing", *, noalias: bool = False) -> Callable[
     """
 
     def made(function: Callable[..., Any]) -> Any:
-        pieces = [(SURFACE, {"surface": surface, "item": TOUCH}) for surface in ("False", "True")]
+        pieces = [(SURFACE, {"surface": surface, "item": TOUCH, "only": ""}) for surface in ("False", "True")]
         return loop(function, "of_contacts", pieces, result, noalias=noalias)
 
     return made
 
 
 def each_load(result: str = "nothing", *, noalias: bool = False) -> Callable[[Callable[..., Any]], Any]:
-    """As `each_contact`, for every point that a surface presses, by its links too. The point is a `Load`.
+    """As `each_contact`, for every point that a surface presses, by its links or faces too. The point is a `Load`.
 
     The force has its damping if the velocities v are among the arguments; without them u stands in their place.
     """
@@ -169,10 +215,12 @@ def each_load(result: str = "nothing", *, noalias: bool = False) -> Callable[[Ca
     def made(function: Callable[..., Any]) -> Any:
         damped = "v" in inspect.signature(function).parameters
         values = {"velocities": "v" if damped else "u", "with_damping": str(damped)}
-        pieces = [(SURFACE, {"surface": surface, "item": LOAD_OF_POINT, **values}) for surface in ("False", "True")]
-        of_points = loop(function, "of_loads", pieces, result, noalias=noalias)
-        pieces.append((LINKS, {"item": LOAD_BY_LINKS, **values}))
-        of_chain = loop(function, "of_loads_and_links", pieces, result, noalias=noalias)
-        return by_net(rope=of_chain, grid=of_points, strand=of_chain)
+        of_point = {"item": LOAD_OF_POINT, "only": "", **values}
+        on_floor, on_sphere = (SURFACE, {"surface": "False", **of_point}), (SURFACE, {"surface": "True", **of_point})
+        by_links = LINKS, {"item": LOAD_OF_SPHERE, **values}
+        of_chain = loop(function, "of_loads_and_links", [on_floor, on_sphere, by_links], result, noalias=noalias)
+        by_faces, alone = (FACES, {"item": LOAD_OF_SPHERE, **values}), (SURFACE, {**on_sphere[1], "only": ALONE})
+        of_wide = loop(function, "of_loads_and_faces", [on_floor, by_faces, alone], result, noalias=noalias)
+        return by_net(rope=of_chain, grid=of_wide, strand=of_chain)
 
     return made

@@ -72,6 +72,16 @@ def draped(contact=None, *, damping_model="axial", **more) -> Net:
     return dataclasses.replace(net, **{"x0": x0, "sphere_velocity": (0.3, -0.2, 0.1), "epoch": -0.1, **more})
 
 
+def spread(contact=None, *, damping_model="axial", **more) -> Net:
+    """A cloth on a moving sphere that is small beside its cells, which faces touch at corners, sides and insides."""
+    net = patch(damping_model, contact or Contact(900.0, 20.0), rows=4, cols=5, seed=3)
+    x0 = net.x0.copy()
+    x0[2] += 0.6 * ((x0[0] - 0.35) ** 2 + (x0[1] - 0.45) ** 2)
+    x0[2, 2, 2] -= 0.12  # pokes in
+    changes = {"x0": x0, "sphere": (0.32, 0.47, -0.29, 0.3), "sphere_velocity": (0.3, -0.2, 0.1), "epoch": -0.1}
+    return dataclasses.replace(net, **{**changes, "pinned": frozenset({(3, 4)}), "radius": 0.02, **more})
+
+
 def hairpin(contact_damping, damping=0.0, drag=0.0, moving=()) -> Net:
     """A rope folded back over itself, nearer than its thickness."""
     x = np.zeros((3, 1, 8))

@@ -22,7 +22,7 @@ from sim.springs.stability import (
 )
 from sim.springs.state import State, advance
 from tests.naive import own_contacts, tangent
-from tests.sim.springs.nets import DAMPABLE, draped, patch, touching_patch
+from tests.sim.springs.nets import DAMPABLE, draped, patch, spread, touching_patch
 
 ZETAS = (0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.707, 1.0, 2.0)
 LIMITS = {  # largest stable h omega at each zeta; None: beyond it a method grows too slowly to be seen
@@ -76,12 +76,15 @@ def test_tangent_products_are_the_derivatives_of_the_forces(model, law):
     assert np.abs(products(net, net.x0, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
 
 
-def test_tangent_products_of_links_on_a_sphere_are_the_derivatives_of_the_forces():
-    """With the change of the place that touches, in the middle of links and at an end of two."""
-    net = draped(Contact(900.0, 6.0), sphere_velocity=(0.0, 0.0, 0.0))
-    stiffness, damping = tangent(net, net.x0)
-    assert np.abs(products(net, net.x0, STIFFNESS) - stiffness).max() < 1e-8 * np.abs(stiffness).max()
-    assert np.abs(products(net, net.x0, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
+@pytest.mark.parametrize("make", [draped, spread])
+@pytest.mark.parametrize("seed", range(3))
+def test_tangent_products_of_links_and_faces_on_a_sphere_are_the_derivatives_of_the_forces(make, seed):
+    """With the change of the place that touches, in the middle of links and faces and at common points."""
+    net = make(Contact(900.0, 6.0), sphere_velocity=(0.0, 0.0, 0.0))
+    x = net.x0 + (0.03 * np.random.default_rng(seed).standard_normal(net.x0.shape) if seed else 0.0)
+    stiffness, damping = tangent(net, x)
+    assert np.abs(products(net, x, STIFFNESS) - stiffness).max() < 1e-8 * np.abs(stiffness).max()
+    assert np.abs(products(net, x, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
 
 
 def test_links_without_rest_length_are_as_stiff_where_their_points_meet():

@@ -11,7 +11,7 @@ import pytest
 from app.lab.course.task import load_tasks
 from app.lab.student.session import Session
 from app.messages import GrabTo, Place, StudentAnswer
-from app.panel.workbook.code_panel import code_lines, tables_of
+from app.panel.workbook.code_panel import code_lines, net_texts, tables_of
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from tests.app.lab.student.test_session import save, taken, working_in
@@ -95,6 +95,21 @@ def test_right_functions_move_the_cloth_as_the_program_does(right: Session, valu
     assert "Your cloth is driven by <b>cloth_forces, cloth_links</b>." in code_lines(
         right.state, right.cloth.report, tables_of(right), "cloth"
     )
+
+
+def test_only_points_touch_a_small_sphere_beside_a_student_s_cloth(right: Session) -> None:
+    """Program's and student's cloth pass it alike, and the panel says so; without a student faces touch it."""
+    level = {"start": "level", "pinned": "free", "sphere": True, "sphere_radius": 0.05, "floor": False}
+    params = dataclasses.replace(SMALL, contact_stiffness=1000.0, **level)
+    scene, alone = ClothScene(params, right.live), ClothScene(params)
+    run(scene, 40)
+    alone.advance(160)
+    assert alone.net.faces_touch
+    assert not scene.net.faces_touch
+    assert alone.state.x[2].mean() > scene.state.x[2].mean() + 0.01
+    assert right.cloth.report.difference < 1e-6
+    said = "only the points of both cloths touch"
+    assert any(said in text for text in net_texts(right.state, right.cloth.report, "cloth"))
 
 
 def test_pins_and_mouse_move_both(right: Session) -> None:

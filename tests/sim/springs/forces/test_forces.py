@@ -10,7 +10,7 @@ from sim.springs.damping import damp_motion, damp_others, make_decay
 from sim.springs.points.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.state import energy
 from tests import naive
-from tests.sim.springs.nets import KNIGHT, draped, hairpin, patch, touching_patch
+from tests.sim.springs.nets import KNIGHT, draped, hairpin, patch, spread, touching_patch
 
 
 @kernel
@@ -80,6 +80,21 @@ def test_forces_on_links_that_touch_the_sphere_are_the_formulas(floor, friction)
         agrees(net, x, 30.0 * v)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("floor", [None, 0.1])
+def test_forces_on_faces_that_touch_the_sphere_are_the_formulas(floor, friction):
+    """At corners, sides and insides of faces, some of whose corners touch it themselves."""
+    net = spread(Contact(900.0, 20.0, friction), floor=floor)
+    for seed in range(5):
+        x, v = shaken(net, seed)
+        xs, vs = np.moveaxis(x, 0, -1), np.moveaxis(v, 0, -1)
+        shared = {int((parts > 1e-14).sum()) for _, parts, *_ in naive.face_touches(net, xs, vs, 0.3)}
+        assert shared == {1, 2, 3} or seed
+        for one in (net, dataclasses.replace(net, families=(*net.families, KNIGHT))):
+            agrees(one, x, v)
+            agrees(one, x, 30.0 * v)
+
+
 @pytest.mark.parametrize("max_force", [1.0, 1e6])
 def test_the_grab_pulls_at_most_its_cap(max_force):
     net = dataclasses.replace(rope(5), grab=Grab(0, 3, (1.0, 2.0, 3.0), 500.0, 3.0, max_force))
@@ -112,7 +127,7 @@ def test_coincident_points_are_pulled_nowhere():
 
 @pytest.mark.parametrize("reverse", [False, True])
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
-@pytest.mark.parametrize("make", [touching_patch, draped])
+@pytest.mark.parametrize("make", [touching_patch, draped, spread])
 def test_split_damping_starts_as_the_damping_forces(make, model, reverse):
     """For a short time s, v changes by s times the accelerations that depend on v."""
     net = make(contact=Contact(900.0, 20.0))
@@ -171,6 +186,12 @@ def own_power(net, x, v, t, h):
         work += force @ np.array(net.sphere_velocity)
         for end, share in ((a, 1.0 - s), (b, s)):
             work -= share * force @ vs[end] if end in net.pinned else 0.0
+    for corners, parts, force, spring, slip in naive.face_touches(net, xs, vs, t):
+        if net.pinned.issuperset(corners):
+            continue
+        dissipated -= (force - spring) @ slip
+        work += force @ np.array(net.sphere_velocity)
+        work -= sum(part * force @ vs[c] for c, part in zip(corners, parts, strict=True) if c in net.pinned)
     pressed = naive.loads(net, xs, vs, t)
     for i, j in itertools.product(*map(range, net.shape)):
         if (i, j) in net.pinned:
@@ -192,10 +213,10 @@ def own_power(net, x, v, t, h):
     return dissipated, work
 
 
-def drawn_along(net, col):
-    """A rope with one pinned point, which moves."""
-    path = PATH._replace(coefficients=(tuple(net.x0[:, 0, col].tolist()), *PATH.coefficients[1:]))
-    return dataclasses.replace(net, pinned=frozenset({(0, col)}), pin_paths=(((0, col), path),))
+def drawn_at(net, row, col):
+    """A net with one pinned point, which moves."""
+    path = PATH._replace(coefficients=(tuple(net.x0[:, row, col].tolist()), *PATH.coefficients[1:]))
+    return dataclasses.replace(net, pinned=frozenset({(row, col)}), pin_paths=(((row, col), path),))
 
 
 PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, -0.2, 0.7), (0.0,) * 3, (0.0,) * 3))
@@ -206,8 +227,10 @@ POWERED = {
         for model in ("isotropic", "axial")
         for law in ("clipped", "lab")
     },
-    "links on a sphere": drawn_along(draped(Contact(900.0, 6.0, 0.3)), 0),
-    "pin in a sphere": drawn_along(draped(Contact(900.0, 6.0), damping_model="isotropic"), 4),
+    "links on a sphere": drawn_at(draped(Contact(900.0, 6.0, 0.3)), 0, 0),
+    "pin in a sphere": drawn_at(draped(Contact(900.0, 6.0), damping_model="isotropic"), 0, 4),
+    "faces on a sphere": drawn_at(spread(Contact(900.0, 6.0, 0.3)), 2, 3),
+    "pin of faces in a sphere": drawn_at(spread(Contact(900.0, 6.0), damping_model="isotropic"), 1, 2),
     "hairpin": SHAKEN,
     "hairpin, axial": dataclasses.replace(SHAKEN, damping_model="axial"),
 }
@@ -250,6 +273,11 @@ def test_the_stored_energies_are_the_formulas():
         contact += sum(
             0.5 * (spring @ spring) / net.contact.stiffness
             for *_, spring, _ in naive.link_touches(net, xs, 0.0 * xs, 0.0)
+        )
+        contact += sum(
+            (spring @ spring) / net.contact.stiffness
+            for corners, _, _, spring, _ in naive.face_touches(net, xs, 0.0 * xs, 0.0)
+            if not net.pinned.issuperset(corners)
         )
         contact += sum(
             0.5 * (force @ force) / net.contact.stiffness for _, _, force in naive.own_contacts(net, xs, 0.0 * xs)

@@ -114,18 +114,21 @@ def test_long_loops_over_pairs_look_at_the_request():
 
 
 def test_a_cancelled_step_parts_nothing():
-    """Else a cancelled solve would take as long as all sweeps of its last call."""
+    """Else a cancelled solve would take as long as all sweeps of its last call. The list of pairs is there."""
     net, v = thrown_rope()
-    x, v, ledger = net.x0.reshape(-1), v.reshape(-1), np.zeros(3)
-    moved = x + STEP * 10.0 * v
+    x, v, ledger = net.x0.reshape(-1).copy(), v.reshape(-1), np.zeros(3)
+    x[-2:] = 0.03
+    moved = x.copy()
+    moved[-2:] -= 0.02
     p = net.kernel_view(STEP)
     remember_places(x, p, True)
     assert keep_apart(moved.copy(), v.copy(), 0.0, p, False, ledger)
-    with counted_looks(1):
-        p, y = net.kernel_view(STEP), moved.copy()
-        remember_places(x, p, True)
-        assert not keep_apart(y, v.copy(), 0.0, p, False, ledger)
+    assert p.pairs[-1, 0] == 1
+    with counted_looks(1) as looks:
+        y = moved.copy()
+        assert not keep_apart(y, v.copy(), 0.0, p._replace(stop=stop_request()), False, ledger)
     assert np.array_equal(y, moved)
+    assert looks == [1]
 
 
 @pytest.mark.parametrize("kind", NETS)

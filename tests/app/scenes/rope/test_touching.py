@@ -12,10 +12,10 @@ from app.scenes.rope.parameters import PRESETS, RopeParams, hidden, touches_itse
 from app.scenes.rope.scene import RopeScene, build, needs, warm_up, warm_up_on_use
 from app.scenes.rope.student_rope import left_out
 from app.scenes.springs.net_motion import rope_lengths
+from benchmarks.knots import determinant
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.statics import hanging_chain
-from tests.sim.springs.kicks.knots import determinant
 
 Rope: Any = RopeScene  # whose types the tests know
 STARTS = parameters_of(RopeParams)["start"].choices

@@ -86,6 +86,14 @@ MUJOCO = """<mujoco><option timestep="{h!r}" integrator="{integrator}" gravity="
 viscosity="{viscosity!r}"/><size memory="200M"/>{rest}</mujoco>"""
 
 
+def mujoco_model(xml: str) -> Any:
+    """A model; warnings are counted, and no file is written about them."""
+    import mujoco  # type: ignore[import-not-found]
+
+    mujoco.set_mju_user_warning(lambda text: None)
+    return mujoco.MjModel.from_xml_string(xml)
+
+
 def has_warned(data: Any) -> bool:
     """True if MuJoCo has warned; of what diverges it begins the run anew."""
     return any(warning.number for warning in data.warning)
@@ -115,7 +123,7 @@ def mujoco_flex(inextensible: bool, net: Net, setting: Setting) -> KnotRun:
     )
     fixed = f'<equality><flex flex="rope" solref="{setting.contact}"/></equality>' if inextensible else ""
     sphere = math.sqrt(1.5 * inertia / net.mass)  # [m] its radius as MuJoCo takes it, from the box of the same inertia
-    model = mujoco.MjModel.from_xml_string(
+    model = mujoco_model(
         MUJOCO.format(
             h=1.0 / setting.rate, integrator="Euler", viscosity=drag / (6.0 * math.pi * sphere),
             rest=f"<worldbody>{bodies}</worldbody>{flex}{fixed}",
@@ -158,7 +166,7 @@ def mujoco_capsules(net: Net, setting: Setting) -> KnotRun:
     bodies += f'<site name="end" pos="{written(ways[-1])}"/>' + "</body>" * len(ways)
     near = [(i, i + gap) for gap in range(1, FREE_OF_CONTACT + 1) for i in range(len(ways) - gap)]
     excluded = "".join(f'<exclude body1="b{i}" body2="b{j}"/>' for i, j in near)
-    model = mujoco.MjModel.from_xml_string(
+    model = mujoco_model(
         MUJOCO.format(
             h=1.0 / setting.rate, integrator="implicitfast", viscosity=0.0,
             rest=f"<worldbody>{bodies}</worldbody><contact>{excluded}</contact>",

@@ -357,7 +357,7 @@ PEERS = (
         settings=ladder((720, (2e4, 20.0)), (960, (2e4, 20.0)), (960, (1e5, 20.0)), (1920, (2e5, 60.0))),
     ),
     Peer(
-        "newton VBD rod, 10 iterations", "newton", functools.partial(newton_rod, 10),
+        "newton VBD rod, 10 iterations", "newton", functools.partial(newton_rod, 10), "axial",
         settings=ladder((60, 1e4), (120, 1e4), (240, 1e5)),
     ),
 )  # fmt: skip

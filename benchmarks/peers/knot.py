@@ -208,7 +208,7 @@ def pyelastica_rod(net: Net, setting: Setting) -> KnotRun:
     """A Cosserat rod with `RodSelfContact` and the EA of the rope, whose bending and twist are SOFT.
 
     Its damping is the rope's drag, and a filter of the first order of what alternates from link to link. Without that
-    filter it diverges at any step that was tried. setting.contact: stiffness [N/m] and damping [N s/m] of contact.
+    filter it was deeper or diverged. setting.contact: stiffness [N/m] and damping [N s/m] of contact.
     """
     import elastica as ea  # type: ignore[import-not-found]
 

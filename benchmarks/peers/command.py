@@ -1,4 +1,4 @@
-"""`springtide bench --peers`: the ladders of other programs in the tasks of rope, cloths, sea and mooring."""
+"""`springtide bench --peers`: the ladders of other programs in the tasks of rope, knot, cloths, sea and mooring."""
 
 import functools
 from collections.abc import Sequence
@@ -7,10 +7,10 @@ from pathlib import Path
 from app.formats import text_tables
 from app.study import tables
 from benchmarks.peers import ladder
-from benchmarks.tasks import cloth, mooring, rope, sea, stiff
+from benchmarks.tasks import cloth, knot, mooring, rope, sea, stiff
 from sim.validation import argument_error
 
-TASKS = {"cloth": cloth, "mooring": mooring, "rope": rope, "sea": sea, "stiff": stiff}
+TASKS = {"cloth": cloth, "knot": knot, "mooring": mooring, "rope": rope, "sea": sea, "stiff": stiff}
 
 
 def measure_peers(names: Sequence[str], quick: bool, words: Sequence[str], out: Path | None) -> None:

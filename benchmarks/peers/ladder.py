@@ -28,6 +28,7 @@ TURNS, LEAST_TURNS = 61, 3  # of each run; fewer where those of a peer add up to
 MAX_TURNS_TIME, QUICK_TURNS_TIME = 1.5, 0.5  # [s]
 MAX_ERROR = 1.0  # [m] a larger one means that the run diverged
 RATIO = "times as long as ours"
+DEEPEST = "deepest [radii]"  # of links in each other, which stands for an error in a knot
 
 
 class Rung(NamedTuple):
@@ -49,7 +50,9 @@ def rungs(peer: Peer, subject: Any, quick: bool) -> list[Rung]:
     """The rungs of a peer, from coarse to fine; quick: every second one."""
     if peer.precisions:
         return [Rung(f"{precision} precision", precision) for precision in peer.precisions]
-    if peer.tolerances:
+    if peer.settings:
+        found = [Rung(*setting) for setting in peer.settings]
+    elif peer.tolerances:
         found = [Rung(f"rtol {rtol:.0e}", rtol) for rtol in peer.tolerances]
     else:
         step, fractions = (peer.step, OWN_FRACTIONS) if peer.step else (critical_step(subject, "leapfrog"), FRACTIONS)
@@ -78,6 +81,11 @@ def in_turns(calls: Sequence[Callable[[], Any]], max_time: float) -> list[list[f
         for own, call in zip(times, calls, strict=True):
             own.append(undisturbed_time(call))
     return times
+
+
+def stamp(turns: int) -> dict[str, Any]:
+    """Columns that say how a row was measured."""
+    return {"turns": turns, "load": load(), "date": datetime.date.today().isoformat()}
 
 
 def compared(peer: Peer, task: Task, quick: bool) -> Rows:
@@ -123,7 +131,7 @@ def compared(peer: Peer, task: Task, quick: bool) -> Rows:
                 "our error at the end [m]": ours.result(best).errors[-1],
                 RATIO: statistics.median(peer_times) / statistics.median(our_times[0]),
             }
-        row |= {"turns": len(peer_times), "load": load(), "date": datetime.date.today().isoformat()}
+        row |= stamp(len(peer_times))
         if 2.0 * statistics.median(peer_times) > MAX_RUN_TIME:
             left = (left if quick else left[1:]) if peer.tolerances else []
     return table
@@ -181,8 +189,8 @@ def read(text: str) -> float | str:
 
 def shown(table: Rows) -> Rows:
     """The columns that a screen has room for."""
-    names = ("task", "peer", "its setting", "error [m]", "peer [ms]", "ours [ms]", RATIO, "note")
-    rows = [row | {"error [m]": last_error(row)} for row in table]
+    names = ("task", "peer", "its setting", "error [m]", DEEPEST, "knot", "peer [ms]", "ours [ms]", RATIO, "note")
+    rows = [row if "knot" in row else row | {"error [m]": last_error(row)} for row in table]
     return [{name: row[name] for name in names if name in row} for row in rows]
 
 
@@ -213,7 +221,11 @@ def summary(table: Rows) -> Rows:
                 "rungs": len(own),
                 "least times as long": min(ratios),
                 "there with": least["its setting"],
-                "and an error of [m]": last_error(least),
+                **(
+                    {"and a depth of [radii]": least[DEEPEST]}
+                    if DEEPEST in least
+                    else {"and an error of [m]": last_error(least)}
+                ),
                 "median": statistics.median(ratios),
                 "greatest": max(ratios),
                 "rungs that are faster": sum(ratio < 1.0 for ratio in ratios),

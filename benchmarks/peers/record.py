@@ -27,6 +27,7 @@ class Peer(NamedTuple):
     step: float = 0.0  # [s] its own time step; 0: it takes the step that it is given
     tolerances: tuple[float, ...] = ()  # relative ones of its ladder, where it chooses its steps; a hundredth: absolute
     precisions: tuple[str, ...] = ()  # of its ladder, where it takes no steps
+    settings: tuple[tuple[str, Any], ...] = ()  # of its ladder with their labels, where no single number says them
 
     def reason_left_out(self, size: int) -> str:
         """Why the peer is not timed on a task of this size, or ""."""

@@ -13,9 +13,9 @@ from app.scenes.rope.scene import RopeScene, build, needs, warm_up, warm_up_on_u
 from app.scenes.rope.student_rope import left_out
 from app.scenes.rope.view import solver_text
 from app.scenes.springs.net_motion import rope_lengths
+from benchmarks.knots import determinant
 from sim.parameters import check_record, parameters_of
 from sim.springs.statics import hanging_chain
-from tests.sim.springs.kicks.knots import determinant
 
 Rope: Any = RopeScene  # whose types the tests know
 STARTS = parameters_of(RopeParams)["start"].choices

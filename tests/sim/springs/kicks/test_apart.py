@@ -6,11 +6,12 @@ import itertools
 import numpy as np
 import pytest
 
+from benchmarks.knots import determinant
 from sim.springs import INTEGRATORS, Contact, rope, simulate
 from sim.springs.kicks.apart import LEAST
 from sim.springs.state import State, advance, energy
 from sim.validation import ApproximationWarning
-from tests.sim.springs.kicks.knots import DETERMINANTS, determinant, knotted_rope, pulled, spaced
+from tests.sim.springs.kicks.knots import DETERMINANTS, knotted_rope, pulled, spaced
 
 QUICK = "leapfrog", "dopri5"  # whose kernels other tests have compiled
 

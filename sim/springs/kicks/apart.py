@@ -3,9 +3,10 @@
 A force that pushes things apart holds neither a pull that is strong enough nor a step that is longer than they are
 thick. So the straight motion of each step is followed: two links of a chain, two edges of a cloth, or a point and a
 face of it, come no nearer to each other than LEAST of the thickness, of a cloth at most of its spacing, or MOST_CLOSING
-of their distance at its start. Conservative advancement finds the first time at which they do, by steps as long as the
-least time in which they could (Mirtich 1996, Impulse-based dynamic simulation of rigid body systems). There the pair
-gets the impulses, of positions and of velocities, that end its approach: equal and opposite, at its places of contact.
+of their distance at its start. Pairs within NEAREST of LEAST come no nearer at all. Conservative advancement finds the
+first time at which they do, by steps as long as the least time in which they could (Mirtich 1996, Impulse-based dynamic
+simulation of rigid body systems). There the pair gets the impulses, of positions and of velocities, that end its
+approach: equal and opposite, at its places of contact.
 Pairs follow each other until none comes too near (Harmon, Vouga, Tamstorf & Grinspun 2008, Robust treatment of
 simultaneous collisions). If that takes more than SWEEPS, no point moves further than a bound that its distances allow.
 
@@ -53,6 +54,7 @@ from sim.springs.points.places import (
 
 LEAST = 0.25  # of the thickness
 MOST_CLOSING = 0.9  # of the distance at the start of a step, of pairs that are nearer than LEAST
+NEAREST = 0.4  # of LEAST, at which a pair comes no nearer at all: distances that shrink for ever end in round-off
 SWEEPS = 30  # over the pairs
 TRIES = 60  # steps of conservative advancement
 NEARLY = 1.01  # of the least distance, at which a pair has met
@@ -101,7 +103,8 @@ least_distance = by_touch(
 @kernel(inline=True)
 def least_after(p, distance):
     """Distance [m] that a pair has to keep in a step that begins at this distance."""
-    return min(least_distance(p), MOST_CLOSING * distance)
+    least = least_distance(p)
+    return min(least, max(MOST_CLOSING * distance, min(distance, NEAREST * least)))
 
 
 @kernel(allocates=False)

@@ -6,9 +6,9 @@ import itertools
 import numpy as np
 import pytest
 
-from benchmarks.knots import determinant
-from sim.springs import INTEGRATORS, Contact, rope, simulate
-from sim.springs.kicks.apart import LEAST
+from benchmarks.knots import determinant, least_distance
+from sim.springs import INTEGRATORS, Contact, Grab, rope, simulate
+from sim.springs.kicks.apart import LEAST, NEAREST
 from sim.springs.state import State, advance, energy
 from sim.validation import ApproximationWarning
 from tests.sim.springs.kicks.knots import DETERMINANTS, knotted_rope, pulled, spaced
@@ -146,6 +146,24 @@ def test_a_knot_stays_a_knot_while_a_hand_pulls_at_it(name, seconds, runs, metho
     for seed in range(runs):
         for state in pulled(knotted_rope(name), seed, seconds, step, method):
             assert determinant(state.x[:, 0].T) == DETERMINANTS[name]
+
+
+@pytest.mark.parametrize("stiffness", [200.0, 1000.0])
+def test_strands_that_a_pull_presses_together_keep_a_distance(stiffness):
+    """A pull above what their contact can hold at any depth: without a least distance they come to within round-off."""
+    net = knotted_rope("trefoil", tail=1.5, gravity=(0.0, 0.0, 0.0))
+    link = net.families[0]._replace(stiffness=5000.0, damping=1.0)
+    end = net.shape[1] - 1
+    hand = Grab(0, end, tuple(5.0 * net.x0[:, 0, end]), 2000.0, 1.0, 50.0)
+    net = dataclasses.replace(
+        net, families=(link,), contact=Contact(stiffness, 1.0), grab=hand, pinned=frozenset({(0, 0)})
+    )
+    state = State.at_rest(net)
+    for _ in range(4):
+        advance(net, state, "leapfrog", 1 / 2000, 1000)
+        assert least_distance(state.x[:, 0].T, 4) > 0.9 * NEAREST * LEAST * net.thickness
+    assert least_distance(state.x[:, 0].T, 4) < LEAST * net.thickness
+    assert determinant(state.x[:, 0].T) == 3
 
 
 def test_a_run_says_that_strands_were_slowed_down():

@@ -54,7 +54,7 @@ from sim.springs.points.places import (
 
 LEAST = 0.25  # of the thickness
 MOST_CLOSING = 0.9  # of the distance at the start of a step, of pairs that are nearer than LEAST
-NEAREST = 0.4  # of LEAST, at which a pair comes no nearer at all: distances that shrink for ever end in round-off
+NEAREST = 0.4  # of LEAST, at which a pair comes no nearer at all: distances that shrink step by step end in round-off
 SWEEPS = 30  # over the pairs
 TRIES = 60  # steps of conservative advancement
 NEARLY = 1.01  # of the least distance, at which a pair has met

@@ -55,7 +55,7 @@ from sim.springs.laws import largest_stiffness
 from sim.springs.near.near_pairs import count_touching
 from sim.springs.net import Net
 from sim.springs.points.cells import faces
-from sim.springs.points.face_places import FACE_PART
+from sim.springs.points.face_places import FACE_PART, face_reach
 from sim.springs.points.line_arrays import LineArrays
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
@@ -146,14 +146,21 @@ def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
     return int(touching.max()) * (2 if net.is_chain else 1)
 
 
+def faces_are_near(net: Net, x: NDArray[np.float64]) -> bool:
+    """False if no face of a cloth at x (3, rows, cols) [m] touches the sphere, where that stands at the net's epoch."""
+    p = net.kernel_view(1.0)
+    return bool(face_reach(np.ascontiguousarray(x).reshape(-1), p.epoch, p) > 0.0)
+
+
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
     """Upper bounds of frequency [rad/s] and damping rate [1/s], from Gershgorin's discs: of springs in any state, of
     links that stiffen in those whose links are stretched no more than the most stretched at x (None: x0).
 
     omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m_i and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m_i,
     the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
-    touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out, and the
-    motion of the place at which a turning link or face touches the sphere.
+    touch one at x (3, rows, cols) [m] or, without x, as equal spheres can; no face of a cloth, if none touches the
+    sphere at x. Air and friction are left out, and the motion of the place at which a turning link or face touches the
+    sphere.
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
@@ -169,7 +176,7 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
     # A point between links or faces that touch the sphere has the force of all.
     on_sphere = (net.sphere is not None) * (2.0 if net.links_touch else 1.0)
-    if net.faces_touch:
+    if net.faces_touch and (x is None or faces_are_near(net, x)):
         on_sphere += FACE_PART * np.bincount(faces(rows, cols).ravel(), minlength=rows * cols).reshape(rows, cols)
     damping += net.drag + ((net.floor is not None) + on_sphere * depth) * net.contact.damping
     stiffness += ((net.floor is not None) + on_sphere) * net.contact.stiffness

@@ -22,7 +22,7 @@ PROJECT = SETTINGS["project"]
 OWN = {"app", "assets", "benchmarks", "sim"}
 # Peers that are no extras of ours: pypbd and bpy are installed by hand, warp's distribution is warp-lang.
 BY_HAND = {"bpy", "pypbd"}
-DISTRIBUTIONS = {"warp": "warp-lang", "netCDF4": "netcdf4"}
+DISTRIBUTIONS = {"warp": "warp-lang", "netCDF4": "netcdf4", "elastica": "pyelastica"}
 
 
 installed = functools.cache(packages_distributions)  # reads the list of files of every distribution

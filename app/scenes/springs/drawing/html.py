@@ -28,7 +28,7 @@ STEP_INFO = (
     "frequency and decay of the motion that gravity causes are off by at most {}."
 )
 WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
-SAME = 0.95  # of the largest stable step, below which that in contact is another
+MUCH_SHORTER = 0.75  # of the largest stable step, below which that in contact is worth a word
 UNLIMITED = 2.0  # steps that are right, in the length of the bar of a method that is stable at every step
 
 
@@ -100,7 +100,7 @@ def step_mark(critical_step: float, accurate_step: float = math.nan, landed_step
     right [s]; NaN: not assessed. landed_step: estimate of the largest stable one in contact with floor or sphere [s].
     """
     landed = ""
-    if landed_step < SAME * critical_step:
+    if landed_step < MUCH_SHORTER * critical_step:
         landed = f"; in contact about {longest_step(rounded_down(landed_step))}"
     return right_mark(critical_step, accurate_step) + landed
 

@@ -418,7 +418,7 @@ def touches_between_points(net: Net) -> bool:
 
 
 def cleared(view: Any, *names: str) -> Any:
-    """The kernels' record with zeros of its own for these arrays."""
+    """A copy of the kernels' record with new arrays of zeros under these names."""
     return view._replace(**{name: np.zeros_like(getattr(view, name)) for name in names})
 
 

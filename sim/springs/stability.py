@@ -15,7 +15,7 @@ the oscillation of the motion that gravity causes (`sim.springs.analysis.accurac
 modes, as the net's weight in any direction moves them. What no spring holds swings as a pendulum of the net's size.
 
 A net that is about to land has stiffer modes when it has. `landed_modes` estimates them from the present ones. Contact
-of the net with itself counts as it is.
+of the net with itself is that of the present state.
 
 Each link is given the stiffness it would have at the largest strain now present in the net: a slack line is about to be
 taut, and a wave carries the strain of one link of a stiffening rope to the others. Larger strains later need a shorter
@@ -152,6 +152,14 @@ def faces_are_near(net: Net, x: NDArray[np.float64]) -> bool:
     return bool(face_reach(np.ascontiguousarray(x).reshape(-1), p.epoch, p) > 0.0)
 
 
+def sphere_depth(net: Net) -> float:
+    """Largest factor of the sphere's damping: of the lab's law the depth, which no bound holds below the radius.
+
+    1 with the other law.
+    """
+    return max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
+
+
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
     """Upper bounds of frequency [rad/s] and damping rate [1/s], from Gershgorin's discs: of springs in any state, of
     links that stiffen in those whose links are stretched no more than the most stretched at x (None: x0).
@@ -172,13 +180,11 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
         for end in ((i, j), far):
             stiffness[end] += 2.0 * reach * f.stiffness * ratios
             damping[end] += 2.0 * f.damping * ratios
-    # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
-    depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
     # A point between links or faces that touch the sphere has the force of all.
     on_sphere = (net.sphere is not None) * (2.0 if net.links_touch else 1.0)
     if net.faces_touch and (x is None or faces_are_near(net, x)):
         on_sphere += FACE_PART * np.bincount(faces(rows, cols).ravel(), minlength=rows * cols).reshape(rows, cols)
-    damping += net.drag + ((net.floor is not None) + on_sphere * depth) * net.contact.damping
+    damping += net.drag + ((net.floor is not None) + on_sphere * sphere_depth(net)) * net.contact.damping
     stiffness += ((net.floor is not None) + on_sphere) * net.contact.stiffness
     if net.thickness > 0.0:
         touching = most_touching(net, x)
@@ -415,9 +421,8 @@ def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
     lightest = float(net.inverse_masses().max(initial=0.0))
     if not surfaces or lightest == 0.0:
         return []
-    depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
     stiffness = surfaces * lightest * net.contact.stiffness
-    rate = surfaces * lightest * net.contact.damping * depth
+    rate = surfaces * lightest * net.contact.damping * sphere_depth(net)
     rubs = net.contact.friction > 0.0 and net.contact.law == "clipped"
     landed = [Mode(stiffness, 0.0, rate)]
     for mode in modes:
@@ -455,8 +460,9 @@ def critical_step(
     >>> round(critical_step(rope(points=10, stiffness=800.0), "leapfrog"), 4)  # [s]
     0.0358
     """
-    record, modes = integrator_named(integrator), modes_at(system, state)
+    record = integrator_named(integrator)
     check_kind("landed", landed, bool, "True or False")
+    modes = modes_at(system, state)
     more = landed_modes(system, modes) if landed and isinstance(system, Net) else []
     return min((step_limit(mode, record) for mode in modes + more), default=math.inf)
 

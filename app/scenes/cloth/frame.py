@@ -34,4 +34,4 @@ class ClothReadings(NamedTuple):
     note: str  # reason why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
     left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
-    solver: SolverReport = SolverReport(0, 0, 0, implicit=False)
+    solver: SolverReport = SolverReport()

@@ -41,4 +41,4 @@ class RopeReadings(NamedTuple):
     largest_stiffness: float  # in that parameter's unit
     note: str  # reason why another method runs than the one chosen, or ""
     cost: NumericalCost | None  # None for explicit methods
-    solver: SolverReport = SolverReport(0, 0, 0, implicit=False)
+    solver: SolverReport = SolverReport()

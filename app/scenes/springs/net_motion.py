@@ -21,10 +21,10 @@ Bound: TypeAlias = Callable[[Net, State], float]  # net and state -> its largest
 class SolverReport(NamedTuple):
     """Steps since the method and the step were chosen, and failures in them."""
 
-    steps: int
-    unsettled: int  # of an implicit method: steps whose solver had not settled; of another: kicks
-    slowed: int  # steps in which parts that touch were slowed down to keep them apart
-    implicit: bool
+    steps: int = 0
+    unsettled: int = 0  # of an implicit method: steps whose solver had not settled; of another: kicks
+    slowed: int = 0  # steps in which parts that touch were slowed down to keep them apart
+    implicit: bool = False
 
 
 class NetMotion:

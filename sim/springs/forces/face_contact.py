@@ -5,8 +5,8 @@ A face is a triangle of the cloth as it is drawn (`sim.springs.points.cells`). I
 the sphere rests on its points, and where a sphere comes between these, edges and faces carry it. With k `FACE_PART` of
 the contact's stiffness a face stores k/2 depth^2 at its place that is nearest to the sphere's centre. Its corners take
 the force by their parts of that place: momentum and angular momentum stay. The nearest place of a triangle is unique
-and moves continuously with its corners, so that the force is continuous and the gradient of the energy. An edge under
-the sphere is pushed through both its faces, a particle through all of its own. Friction acts at the points
+and moves continuously with its corners, so that the force is continuous and the gradient of the energy. The sphere
+pushes an edge through the two faces beside it, and a particle through all of its faces. Friction acts at the points
 (`sim.springs.forces.friction`).
 """
 

@@ -13,7 +13,7 @@ def test_the_package_is_marked_as_typed() -> None:
 
 def is_kernel(function: Function) -> bool:
     """Compiled: its arguments have the types that it is called with."""
-    names = "kernel", "each_link", "each_contact", "each_load"
+    names = "kernel", "each_link", "each_contact", "each_load", "each_face"
     return any(name in ast.unparse(decorator) for decorator in function.decorator_list for name in names)
 
 

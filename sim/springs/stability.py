@@ -652,7 +652,9 @@ def gauge(
     """
     modes = modes_at(net, state) if modes is None else modes
     motion, record = motion_at(net, state) if motion is None else motion, integrator_named(integrator)
-    landed = min((step_limit(mode, record) for mode in landed_modes(net, modes)), default=math.inf)
+    # Explicit Euler's limit, a guide already, follows the least damped mode: that of a contact would tell nothing.
+    estimates = landed_modes(net, modes) if record.limit(0.0) > 0.0 else []
+    landed = min((step_limit(mode, record) for mode in estimates), default=math.inf)
     return gauge_of(modes, record, h, motion)._replace(landed_step=landed)
 
 

@@ -82,6 +82,13 @@ def test_a_step_that_is_stable_in_the_air_throws_a_rope_up_and_one_of_the_estima
     assert largest[1] < 1.05
 
 
+def test_the_gauge_estimates_nothing_for_explicit_euler():
+    net = hanging(800.0, 0.1, Contact(1e5, 5.0), floor=0.0)
+    state = State.at_rest(net)
+    assert math.isinf(gauge(net, "explicit_euler", 1e-3, state).landed_step)
+    assert math.isfinite(gauge(net, "symplectic_euler", 1e-3, state).landed_step)
+
+
 def test_the_gauge_tells_a_step_that_is_too_long_only_in_contact():
     net = hanging(800.0, 0.0, Contact(1e5, 0.0), floor=0.0)
     limit, landed = critical_step(net, "leapfrog"), critical_step(net, "leapfrog", landed=True)

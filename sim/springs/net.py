@@ -433,7 +433,7 @@ def rub_arrays(net: Net) -> dict[str, Any]:
     """`RubArrays` of a list that is not yet made."""
     touching = np.empty((net.most_pairs + 1, 2), np.int64)
     touching[-1] = -1
-    return RubArrays(touching, np.empty((net.most_pairs, 13)), np.empty((net.most_pairs, 5)))._asdict()
+    return RubArrays(touching, np.empty((net.most_pairs, 14)), np.empty((net.most_pairs, 5)))._asdict()
 
 
 def cell_arrays(net: Net) -> dict[str, Any]:

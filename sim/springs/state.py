@@ -14,7 +14,7 @@ from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
 from sim.springs.points.acceleration import set_acceleration
-from sim.springs.points.arrays import LISTS
+from sim.springs.points.arrays import LISTS, StrandArrays
 from sim.springs.points.point_system import PointSystem, check_system
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
@@ -41,6 +41,8 @@ class State:
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     unsettled: int = 0  # steps of implicit methods, and kicks of damped nets and lines, whose solver had not settled
     slowed: int = 0  # steps in which parts that touch were slowed down, as impulses alone did not keep them apart
+    # (pairs, 5): links of a chain that touched in the last step, by their first points, and friction on the second [N]
+    rubs: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty((0, 5)), repr=False)
     lists: dict[str, NDArray[Any]] | None = dataclasses.field(default=None, repr=False)  # see `view_with_lists`
 
     @classmethod
@@ -123,6 +125,17 @@ def lists_of(p: Any) -> dict[str, Any]:
     return {name: getattr(p, name) for name in (*LISTS, *LIST_SIZES) if hasattr(p, name)}
 
 
+def set_rubs(p: Any, rubs: NDArray[np.float64]) -> None:
+    """Have the kernels begin with the friction of a state."""
+    count = min(len(rubs), len(p.last_rubs))
+    p.last_rubs[:count] = rubs[:count]
+    p.touching[-1, 1] = count
+
+
+def rubs_of(p: Any) -> NDArray[np.float64]:
+    return p.last_rubs[: max(0, p.touching[-1, 1])].copy()
+
+
 def touches_itself(system: PointSystem) -> bool:
     """True if a look for contacts may end a solve early."""
     return isinstance(system, Net) and system.thickness > 0.0
@@ -200,6 +213,9 @@ def advance(
     touches = touches_itself(system)
     if touches:
         p = view_with_lists(p, state)
+    rubs = isinstance(p, StrandArrays)
+    if rubs:
+        set_rubs(p, state.rubs)
     may_end_within_a_step = integrator.implicit or touches
     for done in range(0, steps, most):
         count = min(most, steps - done)
@@ -221,6 +237,8 @@ def advance(
         state.slowed = int(ledger[3])
     if touches:
         state.lists = lists_of(p)
+    if rubs:
+        state.rubs = rubs_of(p)
 
 
 def energy(system: PointSystem, state: State) -> Energy:

@@ -45,11 +45,11 @@ def tight() -> Case:
     return scene.net, scene.state, scene.step, 500
 
 
-def coil(points: int) -> Case:
-    """A rope that lies on the floor in turns of 0.3 m, each on the one below."""
+def coil(points: int, turn: float) -> Case:
+    """A rope that lies on the floor in turns of this radius [m], each on the one below."""
     rest = 2.0 * RADIUS
-    angle = np.arange(points) * rest / 0.3
-    x = np.array([0.3 * np.cos(angle), 0.3 * np.sin(angle), RADIUS + 0.95 * 2.0 * RADIUS * angle / (2.0 * np.pi)])
+    angle = np.arange(points) * rest / turn
+    x = np.array([turn * np.cos(angle), turn * np.sin(angle), RADIUS + 0.95 * 2.0 * RADIUS * angle / (2.0 * np.pi)])
     net = rope(
         points, rest * (points - 1), 0.05, 2000.0, 0.3, 0.05, floor=0.0, contact=CONTACT, radius=RADIUS,
         self_contact=True,
@@ -69,8 +69,9 @@ def draped() -> Case:
 CASES: dict[str, Callable[[], Case]] = {
     "rope of 100 points, loose on the floor": loose,
     "tight knot": tight,
-    "coil of 1000 points": lambda: coil(1000),
-    "coil of 10,000 points": lambda: coil(10_000),
+    "coil of 1000 points": lambda: coil(1000, 0.3),
+    "coil of 10,000 points, as high": lambda: coil(10_000, 3.0),
+    "coil of 10,000 points, ten times as high": lambda: coil(10_000, 0.3),
     "drape, 64 x 64": draped,
 }
 

@@ -17,9 +17,11 @@ from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import Force
 from sim.springs.near.near_pairs import are_neighbours, refresh_pairs
 from sim.springs.points.arrays import StrandArrays, span
-from sim.springs.points.link_pairs import opening_of, pair_at, rate_of
+from sim.springs.points.link_pairs import LinkPair, opening_of, pair_at, rate_of
 from sim.springs.points.order import in_turn
 from sim.springs.points.places import dot
+
+MOBILITY = 6  # column of p.rubs, after those of `LinkPair` but its points
 
 
 @kernel(inline=True)
@@ -70,11 +72,18 @@ def add_kick(out, p, pair, size):
 
 @kernel(allocates=False)
 def set_touching(x, p):
-    """List the pairs that touch; returns their number."""
+    """List the pairs that touch, with their places; returns their number."""
     count = 0
     for q in range(refresh_pairs(x, p)):
-        if pushes(p, q) and depth_of(p, pair_number(x, p, q)) > 0.0:
-            p.touching[count, 0], p.touching[count, 1] = p.pairs[q, 0], p.pairs[q, 1]
+        if not pushes(p, q):
+            continue
+        pair = pair_number(x, p, q)
+        if depth_of(p, pair) > 0.0:
+            row = p.rubs[count]
+            p.touching[count, 0], p.touching[count, 1] = pair.a, pair.b
+            row[0], row[1], row[2] = pair.s, pair.t, pair.distance
+            row[3], row[4], row[5] = pair.nx, pair.ny, pair.nz
+            row[MOBILITY] = pair_mobility(p, pair)
             count += 1
     p.touching[p.touching.shape[0] - 1, 0] = count
     return count
@@ -88,14 +97,16 @@ def touching_at_hand(x, p):
 
 
 @kernel(inline=True)
-def touching_pair(x, p, i):
-    return pair_at(x, p.cols, p.touching[i, 0], p.touching[i, 1])
+def touching_pair(p, i):
+    """Touching pair i, as `set_touching` has seen it."""
+    r = p.rubs
+    return LinkPair(p.touching[i, 0], p.touching[i, 1], r[i, 0], r[i, 1], r[i, 2], r[i, 3], r[i, 4], r[i, 5])
 
 
 @kernel(allocates=False)
 def accelerate(x, v, t, p, with_damping, f, a):
     for i in range(set_touching(x, p)):
-        pair = touching_pair(x, p, i)
+        pair = touching_pair(p, i)
         add_kick(a, p, pair, push_of(v, p, pair, depth_of(p, pair), with_damping))
 
 
@@ -109,8 +120,9 @@ def damp_strands_kicked(x, v, a, mean, s, p, reverse):
     """
     n, count = p.cols, touching_at_hand(x, p)
     for turn in range(count):
-        pair = touching_pair(x, p, in_turn(turn, count, reverse))
-        depth, w = depth_of(p, pair), pair_mobility(p, pair)
+        i = in_turn(turn, count, reverse)
+        pair, w = touching_pair(p, i), p.rubs[i, MOBILITY]
+        depth = depth_of(p, pair)
         if w == 0.0:
             continue
         kicked, most = rate_of(v, n, pair), p.contact_k * depth
@@ -261,7 +273,7 @@ def blocks(x, v, t, g, p, points):
     Points of two strands have no block in common, so that a quasi-Newton method learns what pairs do together.
     """
     for i in range(set_touching(x, p)):
-        pair = touching_pair(x, p, i)
+        pair = touching_pair(p, i)
         depth = depth_of(p, pair)
         along = g * g * p.contact_k
         if p.contact_k * depth > p.contact_b * rate_of(v, p.cols, pair):

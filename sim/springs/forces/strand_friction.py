@@ -3,8 +3,8 @@
 Two places that touch get the tangential forces that stop them along each other against the sum of all other forces, at
 most mu N, as points do on a surface (`sim.springs.forces.friction`). A link may touch several others, so that all are
 solved together, pair by pair in sweeps to and fro (M. Jean 1999, The non-smooth contact dynamics method, section 5),
-until no force changes by more than SETTLED of the largest mu N, or after SWEEPS. A kick begins with the impulses of the
-one before in the same call, so that MORE_SWEEPS are enough, even in a tight knot.
+until no force changes by more than SETTLED of the largest mu N, or after SWEEPS. A kick begins with the forces of the
+one before, which a state keeps (`State.rubs`), so that MORE_SWEEPS are enough, even in a tight knot.
 
 Implicit methods find by such sweeps the forces that hold a chain at rest at the start of a step. In the step each pair
 gets its force and what stops its places in the step, at most mu N: friction depends on velocities alone, as that of
@@ -22,46 +22,36 @@ from sim.springs.forces.friction import FIXED, NOTED
 from sim.springs.forces.matrices import add_block
 from sim.springs.forces.record import Force
 from sim.springs.forces.strand_contact import (
+    MOBILITY,
     add_opposite,
     depth_of,
-    pair_mobility,
     pinned_velocity,
     push_of,
     touching_at_hand,
     touching_pair,
 )
 from sim.springs.points.arrays import StrandArrays
-from sim.springs.points.link_pairs import LinkPair, opening_of
+from sim.springs.points.link_pairs import opening_of
 from sim.springs.points.order import in_turn
 
 SWEEPS = 50
 MORE_SWEEPS = 4
 SETTLED = 1e-6
 HELD = 1e-9  # the same of forces that hold through a step of an implicit method, where their error makes creep
-# Columns of p.rubs: the pair's places and normal as in `LinkPair`, mu N [N], its mobility [1/kg], the force on its
-# second link [N], and the impulse [N s].
-MOST, MOBILITY, FORCE_AT, IMPULSE_AT = 5, 6, 7, 10
+# Further columns of p.rubs: mu N [N] of a touching pair, the force on its second link [N], and the impulse [N s].
+MOST, FORCE_AT, IMPULSE_AT = 7, 8, 11
 
 stopping = kernel(inline=True)(point_laws.stopping)
 
 
-@kernel(inline=True)
-def rubbing(p, i):
-    """Touching pair i, as `note` has seen it."""
-    r = p.rubs
-    return LinkPair(p.touching[i, 0], p.touching[i, 1], r[i, 0], r[i, 1], 0.0, r[i, 2], r[i, 3], r[i, 4])
-
-
 @kernel(allocates=False)
 def note(x, v, p):
-    """Note the touching pairs with the force mu N of each; returns their number, and the largest mu N [N]."""
+    """Note the force mu N of each touching pair; returns their number, and the largest mu N [N]."""
     count, largest = touching_at_hand(x, p), 0.0
     for i in range(count):
-        pair, row = touching_pair(x, p, i), p.rubs[i]
-        row[0], row[1], row[2], row[3], row[4] = pair.s, pair.t, pair.nx, pair.ny, pair.nz
-        row[MOST] = p.friction * push_of(v, p, pair, depth_of(p, pair), True)
-        row[MOBILITY] = pair_mobility(p, pair)
-        largest = max(largest, row[MOST])
+        pair = touching_pair(p, i)
+        p.rubs[i, MOST] = p.friction * push_of(v, p, pair, depth_of(p, pair), True)
+        largest = max(largest, p.rubs[i, MOST])
     return count, largest
 
 
@@ -95,7 +85,7 @@ def sweep_forces(v, stop_rate, p, count, reverse, a):
     n, largest = p.cols, 0.0
     for turn in range(count):
         i = in_turn(turn, count, reverse)
-        pair, w = rubbing(p, i), p.rubs[i, MOBILITY]
+        pair, w = touching_pair(p, i), p.rubs[i, MOBILITY]
         most = p.rubs[i, MOST]
         if most == 0.0 or w == 0.0:
             continue
@@ -138,12 +128,12 @@ def number_in_last(p, i, first):
 
 
 @kernel(allocates=False)
-def keep(p, count, column):
-    """Keep the impulses for the next kick, or the forces for the stages of an implicit step."""
+def keep(p, count, column, scale):
+    """Keep the forces, `scale` times what is in this column, for the next kick or the stages of an implicit step."""
     for i in range(count):
         row, last = p.rubs[i], p.last_rubs[i]
         last[0], last[1] = p.touching[i, 0], p.touching[i, 1]
-        last[2], last[3], last[4] = row[column], row[column + 1], row[column + 2]
+        last[2], last[3], last[4] = scale * row[column], scale * row[column + 1], scale * row[column + 2]
     p.touching[p.touching.shape[0] - 1, 1] = count
 
 
@@ -167,7 +157,7 @@ def add_fixed(v, p, count, a):
         w = p.rubs[i, MOBILITY]
         if w == 0.0:
             continue
-        pair = rubbing(p, i)
+        pair = touching_pair(p, i)
         first = first_in_last(p, i, first)
         sx, sy, sz, part = stopping_with_noted(v, p, i, pair, first)
         share = -part / w
@@ -193,7 +183,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
         return
     if p.load_is[0] == NOTED:
         settle_forces(v, 0.0, p, count, HELD * most, a)
-        keep(p, count, FORCE_AT)
+        keep(p, count, FORCE_AT, 1.0)
     settle_forces(v, p.stop_rate, p, count, SETTLED * most, a)
 
 
@@ -207,7 +197,7 @@ def blocks(x, v, t, g, p, points):
     for i in range(count):
         if p.rubs[i, MOBILITY] == 0.0:
             continue
-        pair = rubbing(p, i)
+        pair = touching_pair(p, i)
         first = first_in_last(p, i, first)
         _, _, _, part = stopping_with_noted(v, p, i, pair, first)
         across = g * p.stop_rate * part / p.rubs[i, MOBILITY]
@@ -221,7 +211,7 @@ def blocks(x, v, t, g, p, points):
 def foresee(x, v, t, p):
     """Set the forces of pairs that slide at v, before a kick that `hold` ends."""
     for i in range(note(x, v, p)[0]):
-        pair, most, w = rubbing(p, i), p.rubs[i, MOST], p.rubs[i, MOBILITY]
+        pair, most, w = touching_pair(p, i), p.rubs[i, MOST], p.rubs[i, MOBILITY]
         u, q, r = opening_of(v, p.cols, pair)
         tx, ty, tz = along_surface(pair, u, q, r)
         speed = math.sqrt(tx * tx + ty * ty + tz * tz)
@@ -236,7 +226,7 @@ def sweep_impulses(v, s, p, count, foreseen, reverse):
     largest = 0.0
     for turn in range(count):
         i = in_turn(turn, count, reverse)
-        pair, w, row = rubbing(p, i), p.rubs[i, MOBILITY], p.rubs[i]
+        pair, w, row = touching_pair(p, i), p.rubs[i, MOBILITY], p.rubs[i]
         limit = s * row[MOST]
         if limit == 0.0 or w == 0.0:
             continue
@@ -256,7 +246,7 @@ def sweep_impulses(v, s, p, count, foreseen, reverse):
 @kernel(inline=True)
 def pins_share(v, p, i, column):
     """Product of a force, or impulse, of a pair and the motion that pins give its places: work that they put in."""
-    pair, row = rubbing(p, i), p.rubs[i]
+    pair, row = touching_pair(p, i), p.rubs[i]
     ax, ay, az = pinned_velocity(v, p, pair.a, pair.s)
     bx, by, bz = pinned_velocity(v, p, pair.b, pair.t)
     return row[column] * (ax - bx) + row[column + 1] * (ay - by) + row[column + 2] * (az - bz)
@@ -264,15 +254,15 @@ def pins_share(v, p, i, column):
 
 @kernel(allocates=False)
 def begin_with_last(v, s, p, count):
-    """Begin with the impulses of the last kick, each at most its pair's limit; returns False without such a kick."""
+    """Begin with the forces of the last kick, each at most its pair's limit; returns False without such a kick."""
     number, first = number_of_last(p), 0
     for i in range(count):
         first = first_in_last(p, i, first)
         k = number_in_last(p, i, first)
         if k == number or p.rubs[i, MOBILITY] == 0.0:
             continue
-        pair, last = rubbing(p, i), p.last_rubs[k]
-        jx, jy, jz = along_surface(pair, last[2], last[3], last[4])
+        pair, last = touching_pair(p, i), p.last_rubs[k]
+        jx, jy, jz = along_surface(pair, s * last[2], s * last[3], s * last[4])
         size, limit = math.sqrt(jx * jx + jy * jy + jz * jz), s * p.rubs[i, MOST]
         part = limit / size if size > limit else 1.0
         change(v, p, i, pair, IMPULSE_AT, part * jx, part * jy, part * jz)
@@ -291,7 +281,7 @@ def hold(x, v, t, s, p, foreseen):
     for sweep in range(sweeps):
         if sweep_impulses(v, s, p, count, foreseen, sweep % 2 == 1) <= (SETTLED * s * most) ** 2:
             break
-    keep(p, count, IMPULSE_AT)
+    keep(p, count, IMPULSE_AT, 1.0 / s)
     work = 0.0
     if p.pins.shape[0] > 0:
         for i in range(count):
@@ -305,7 +295,7 @@ def power(x, v, t, p, with_damping):
     dissipated = work = 0.0
     if with_damping:
         for i in range(touching_at_hand(x, p)):
-            u, q, r = opening_of(v, p.cols, rubbing(p, i))
+            u, q, r = opening_of(v, p.cols, touching_pair(p, i))
             row = p.rubs[i]
             dissipated -= row[FORCE_AT] * u + row[FORCE_AT + 1] * q + row[FORCE_AT + 2] * r
             work += pins_share(v, p, i, FORCE_AT)

@@ -88,8 +88,8 @@ class RubArrays(NamedTuple):
 
     # (most + 1, 2): pairs of links that touch; in [-1] their number and that of the last kick, -1: no list yet
     touching: NDArray[np.int64]
-    rubs: NDArray[np.float64]  # (most, 13): their places and normals, and friction
-    last_rubs: NDArray[np.float64]  # (most, 5): those of the last kick: first points and impulse [N s]
+    rubs: NDArray[np.float64]  # (most, 14): their places, distance and normals, mobility, and friction
+    last_rubs: NDArray[np.float64]  # (most, 5): those of the last kick: first points, and friction on the second [N]
 
 
 class CellArrays(NamedTuple):

@@ -132,6 +132,20 @@ def test_in_a_heap_every_touching_pair_obeys_coulomb(speed):
         assert np.abs(left).max() < 1e-9 * np.abs(a).max()
 
 
+@pytest.mark.parametrize("name", ["leapfrog", "tr_bdf2"])
+def test_a_heap_moves_the_same_however_its_steps_are_shared_among_calls_and_copies(name):
+    """The friction of the last step is part of the state."""
+    net = tangled(seed=1, contact=Contact(500.0, 3.0, 0.5))
+    once, often = State.at_rest(net), State.at_rest(net)
+    advance(net, once, name, 1e-3, 15)
+    for _ in range(5):
+        advance(net, often, name, 1e-3, 3)
+        often = often.copy()
+    assert len(once.rubs) > 3
+    assert np.abs(often.x - once.x).max() < 1e-14
+    assert np.abs(often.rubs - once.rubs).max() < 1e-9 * np.abs(once.rubs[:, 2:]).max()
+
+
 def tensions(net, state):
     """(points - 1,) [N] of the links, by their lengths."""
     lengths = np.linalg.norm(np.diff(state.x[:, 0], axis=1), axis=0)

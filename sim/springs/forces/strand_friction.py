@@ -35,7 +35,7 @@ from sim.springs.points.link_pairs import opening_of
 from sim.springs.points.order import in_turn
 
 SWEEPS = 50
-MORE_SWEEPS = 4
+MORE_SWEEPS = 2
 SETTLED = 1e-6
 HELD = 1e-9  # the same of forces that hold through a step of an implicit method, where their error makes creep
 # Further columns of p.rubs: mu N [N] of a touching pair, the force on its second link [N], and the impulse [N s].

@@ -55,6 +55,7 @@ from sim.springs.laws import largest_stiffness
 from sim.springs.near.near_pairs import count_touching
 from sim.springs.net import Net
 from sim.springs.points.cells import faces
+from sim.springs.points.each_link import TINY
 from sim.springs.points.face_places import FACE_PART, face_reach
 from sim.springs.points.line_arrays import LineArrays
 from sim.springs.points.point_system import PointSystem, check_system
@@ -413,9 +414,9 @@ def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
     """Estimates of a net's top modes where all of its points touch floor or sphere.
 
     modes: `top_modes` of a state. A contact adds to a mode's omega^2 and damping rate at most those of the lightest
-    point (Weyl's inequality); of what slides it adds friction instead. A light point that is hardly linked swings on
-    its contact alone. Faces of a cloth, which a small sphere touches between its points, are left out. Empty without
-    floor and sphere.
+    point (Weyl's inequality), less what the mode has of contact already; of what slides it adds friction instead. A
+    light point that is hardly linked swings on its contact alone. Faces of a cloth, which a small sphere touches
+    between its points, are left out. Empty without floor and sphere.
     """
     surfaces = max(net.floor is not None, (net.sphere is not None) * (2.0 if net.links_touch else 1.0))
     lightest = float(net.inverse_masses().max(initial=0.0))
@@ -426,8 +427,9 @@ def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
     rubs = net.contact.friction > 0.0 and net.contact.law == "clipped"
     landed = [Mode(stiffness, 0.0, rate)]
     for mode in modes:
+        missing = min(max(stiffness - (mode.stiffness - mode.links), 0.0), stiffness) / max(stiffness, TINY)
         for slides in SLIDING if rubs else (0.0,):
-            held = 1.0 - slides
+            held = missing * (1.0 - slides)
             landed.append(
                 mode._replace(
                     stiffness=mode.stiffness + held * stiffness, rate=mode.rate + held * rate,

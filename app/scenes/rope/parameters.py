@@ -78,7 +78,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Coil": {
         "units": "material", "points": 80, "length": 2.9, "axial_stiffness": 500.0, "axial_viscosity": 2.0,
         "mass_per_length": 2.0, "drag_per_length": 1.0, "contact_stiffness": 1e4, "contact_damping": 10.0,
-        "time_step": 1 / 960, "self_contact": True, "start": "hanging",
+        "time_step": 1 / 1440, "self_contact": True, "start": "hanging",
     },
 }  # fmt: skip
 

@@ -58,6 +58,14 @@ def test_no_landing_needs_a_shorter_step_than_the_estimate(name, stiffness, damp
     assert 0.35 * min(limits) < estimate < 1.02 * min(limits)
 
 
+@pytest.mark.parametrize("stiffness", [100.0, 1e4, 1e6])
+def test_of_a_rope_that_lies_on_the_floor_contact_counts_once(stiffness):
+    net = hanging(800.0, 0.0, Contact(stiffness, 0.0), floor=0.0)
+    for state in landings(net):
+        limit = critical_step(net, "leapfrog", state)
+        assert 0.85 * limit < critical_step(net, "leapfrog", state, landed=True) < 1.001 * limit
+
+
 def test_where_contact_is_far_stiffer_than_the_links_the_estimate_is_that_of_the_contact():
     net = hanging(800.0, 0.0, Contact(1e6, 0.0), floor=0.0)
     exact = 2.0 / math.sqrt(1e6 / net.mass)

@@ -14,13 +14,13 @@ CAUTION = 0.9  # of the limit of a method, up to which a step is proposed
 
 def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_itself: bool = False) -> str:
     """Proposals in words. gauge: of the present step; points: name of the elements that a coarser net has fewer of."""
-    proposals = [f"fewer {points}"]
+    proposals, stable = [f"fewer {points}"], CAUTION * min(gauge.critical_step, gauge.landed_step)
     if touches_itself:
-        proposals.append("no self-collision")
+        proposals.append("no contact with itself")
     if integrator.implicit:
         proposals.append("a larger step")
-    elif gauge.share < 0.5 * CAUTION:
-        proposals.append(f"a larger step, up to {longest_step(CAUTION * gauge.critical_step)}")
+    elif gauge.step < 0.5 * stable:
+        proposals.append(f"a larger step, up to {longest_step(stable)}")
     leapfrog = INTEGRATORS["leapfrog"]
     longest = leapfrog.stable_step(gauge.highest, 0.0)  # at any damping
     costs_more = integrator.evals > leapfrog.evals or integrator.implicit

@@ -129,7 +129,7 @@ def number_in_last(p, i, first):
 
 @kernel(allocates=False)
 def keep(p, count, column, scale):
-    """Keep the forces, `scale` times what is in this column, for the next kick or the stages of an implicit step."""
+    """Keep `scale` times the numbers of a column as forces, for the next kick or the stages of an implicit step."""
     for i in range(count):
         row, last = p.rubs[i], p.last_rubs[i]
         last[0], last[1] = p.touching[i, 0], p.touching[i, 1]

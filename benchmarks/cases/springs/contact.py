@@ -57,7 +57,7 @@ def coil(points: int, turn: float) -> Case:
     net = dataclasses.replace(net, x0=np.ascontiguousarray(x[:, None]), pinned=frozenset(), gravity=(0.0, 0.0, -1.0))
     state = State.at_rest(net)
     advance(net, state, "leapfrog", 1e-3, 100)
-    return net, state, 1e-3, max(10, 200_000 // points)
+    return net, state, 1e-3, 100
 
 
 def draped() -> Case:

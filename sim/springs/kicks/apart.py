@@ -22,6 +22,7 @@ import numpy as np
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import kinetic_energy, stored_energies
 from sim.springs.near.near_cells import (
+    closing_since_list,
     find_near,
     find_neighbours,
     four_in_list,
@@ -166,7 +167,6 @@ def pairs_of_chain(x, p):
 @kernel
 def pairs_of_cloth(x, p):
     last, least = p.near.shape[0] - 1, least_distance(p)
-    set_closing(x, p)
     has_list = p.near[last, 0] >= 0 and has_far(p, least)
     if has_list and has_neighbours(p, least):
         return p.near[last, 0], True
@@ -181,15 +181,18 @@ def pairs_of_cloth(x, p):
 
 
 @kernel(inline=True)
-def is_near_enough(p, q):
-    """False of a pair that cannot come too near, by its distance when the list was made and the motion since."""
-    return p.near_gaps[q] - p.closing[p.near[q, 2]] < least_distance(p)
+def is_near_enough(x, p, q):
+    """False of a pair that cannot come too near, by its distance when the list was made and the motion since: that of
+    all parts, or its own at the start and at the end of the step."""
+    kind, left = p.near[q, 2], p.near_gaps[q] - least_distance(p)
+    return p.closing[kind] > left and closing_since_list(x, p, four_in_list(p, q), kind) > left
 
 
-# (number of pairs in the list of those that may meet in the step, False if the step is too long for the list's room),
-# and False of a pair that cannot.
+# Note where a step ends, for `pairs_of_step`: (number of pairs in the list of those that may meet in the step, False if
+# the step is too long for the list's room); and False of a pair that cannot.
+note_end = by_touch(chain=kernel(lambda x, p: None, inline=True), cloth=set_closing)
 pairs_of_step = by_touch(chain=pairs_of_chain, cloth=pairs_of_cloth)
-is_worth_a_look = by_touch(chain=kernel(lambda p, q: True, inline=True), cloth=is_near_enough)
+is_worth_a_look = by_touch(chain=kernel(lambda x, p, q: True, inline=True), cloth=is_near_enough)
 
 
 @kernel
@@ -223,7 +226,7 @@ def hold_back(x, v, p):
     mx, my, mz = shared_shift(x, p)
     count, _ = pairs_of_step(x, p)
     for q in range(count):
-        if not is_worth_a_look(p, q):
+        if not is_worth_a_look(x, p, q):
             continue
         four = four_at(p, q)
         distance = places_at(p.last, n, four).distance
@@ -280,15 +283,17 @@ def energy_of(x, v, t, p):
 
 @kernel
 def part_pairs(x, v, t, p, with_account, ledger):
-    """`keep_apart` of a step in which pairs may meet."""
+    """`keep_apart` of a step in which pairs may meet, as `may_meet` has noted its end."""
     kept, slowed, before = False, False, 0.0
     for sweep in range(SWEEPS + HOLDS + 1):
         if is_stopped(p.stop):
             break
+        if sweep > 0:
+            note_end(x, p)
         count, has_room = pairs_of_step(x, p)
         met = not has_room
         for q in range(count):
-            if not is_worth_a_look(p, q):
+            if not is_worth_a_look(x, p, q):
                 continue
             time, places, least = meeting(x, p, four_at(p, q))
             if time == NEVER:

@@ -415,26 +415,37 @@ def note_left_out(p):
 
 
 @kernel(noalias=True, inline=True)
-def add_change(x, listed, o, gap, count, n, most):
-    """Raise `most` (count,) to the squared changes of the ways from as many particles, from o on, to those `gap` on."""
+def set_moves(x, listed, o, count, n, moves):
+    """Set the motion (3 count,) of as many particles, from o on, since the list was made."""
     for q in range(count):
         j = o + q
-        k = j + gap
-        dx = (x[k] - listed[k]) - (x[j] - listed[j])
-        dy = (x[n + k] - listed[n + k]) - (x[n + j] - listed[n + j])
-        dz = (x[n + n + k] - listed[n + n + k]) - (x[n + n + j] - listed[n + n + j])
+        moves[q] = x[j] - listed[j]
+        moves[count + q] = x[n + j] - listed[n + j]
+        moves[count + count + q] = x[n + n + j] - listed[n + n + j]
+
+
+@kernel(noalias=True, inline=True)
+def add_changes(first, second, gap, count, cols, most):
+    """Raise `most` (count,) to the squared differences of the motions of as many particles and those `gap` on."""
+    for q in range(count):
+        k = q + gap
+        dx = second[k] - first[q]
+        dy = second[cols + k] - first[cols + q]
+        dz = second[cols + cols + k] - first[cols + cols + q]
         change = dx * dx + dy * dy + dz * dz
         most[q] = change if change > most[q] else most[q]
 
 
 @kernel(noalias=True, allocates=False)
-def add_changes(x, listed, rows, cols, down, across):
+def add_rows(x, listed, rows, cols, moves, down, across):
+    """moves: (2, 3 cols), for those of a row and of the one before."""
     n, one, width = np.uint64(rows * cols), np.uint64(1), np.uint64(cols)
     for i in range(rows):
-        o = np.uint64(i) * width
-        add_change(x, listed, o, one, width - one, n, across)
-        if i + 1 < rows:
-            add_change(x, listed, o, width, width, n, down)
+        here, before = moves[i % 2], moves[1 - i % 2]
+        set_moves(x, listed, np.uint64(i) * width, width, n, here)
+        add_changes(here, here, one, width - one, width, across)
+        if i > 0:
+            add_changes(before, here, np.uint64(0), width, width, down)
 
 
 @kernel
@@ -442,7 +453,7 @@ def motion_since(x, p):
     """Largest motion [m] of a particle about the mean since the list was made, NaN if any is, and largest relative
     motion along a column and along a row, from one to the next, since that of neighbours was made."""
     down, across = np.zeros(p.cols), np.zeros(p.cols)
-    add_changes(x, p.joined, p.rows, p.cols, down, across)
+    add_rows(x, p.joined, p.rows, p.cols, np.empty((2, 3 * p.cols)), down, across)
     far = math.sqrt(farthest(x, p.listed, np.uint64(p.rows * p.cols)))
     return far, math.sqrt(down.max()) + math.sqrt(across.max())
 
@@ -466,6 +477,13 @@ def set_closing(x, p):
     p.moved[2], p.moved[3] = motion_since(x, p)
     far, near = max(p.moved[0], p.moved[2]), max(p.moved[1], p.moved[3])
     p.closing[FAR], p.closing[JOINED], p.closing[NEXT] = 2.0 * far, 2.0 * near, 3.0 * near
+
+
+@kernel(inline=True)
+def closing_since_list(x, p, four, kind):
+    """Bound of how much nearer a pair has come [m] since the list was made, up to anywhere in the straight step."""
+    n, seen = p.rows * p.cols, p.listed if kind == FAR else p.joined
+    return max(closing_bound(x, seen, n, four), closing_bound(p.last, seen, n, four))
 
 
 @kernel(inline=True)

@@ -51,7 +51,7 @@ CURVES = {
         "Tension along the rope",
         "N",
         "Distance from the root [m]",
-        ("tension", "root\u2019s \u00d7 exp(\u03bc\u03b8), most that friction holds"),
+        ("tension", "root\u2019s \u00d7 exp(\u03bc\u03b8), most that friction holds without the rope\u2019s weight"),
         least=0.1,
     )
 }
@@ -269,7 +269,7 @@ class RopeScene(NetScene[RopeParams]):
         self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
 
     def curves(self) -> dict[str, Columns] | None:
-        """The tension along the rope, beside the most that friction on the sphere lets the root hold."""
+        """The tension along the rope, beside the most that friction on the sphere holds without the rope's weight."""
         sphere = self.net.sphere
         if not self.params.plot_along or sphere is None:
             return None

@@ -213,8 +213,8 @@ def advance(
     touches = touches_itself(system)
     if touches:
         p = view_with_lists(p, state)
-    rubs = isinstance(p, StrandArrays)
-    if rubs:
+    has_strands = isinstance(p, StrandArrays)
+    if has_strands:
         set_rubs(p, state.rubs)
     may_end_within_a_step = integrator.implicit or touches
     for done in range(0, steps, most):
@@ -237,7 +237,7 @@ def advance(
         state.slowed = int(ledger[3])
     if touches:
         state.lists = lists_of(p)
-    if rubs:
+    if has_strands:
         state.rubs = rubs_of(p)
 
 

@@ -80,6 +80,9 @@ def check_state(system: PointSystem, state: State, name: str = "state") -> None:
             raise argument_error(field, f"{array.dtype}, {array.strides}", "a contiguous array of float64")
         if not array.flags.writeable:
             raise argument_error(field, "a read-only array", "one that can be changed, as `State.copy` makes")
+    rubs = state.rubs
+    if not isinstance(rubs, np.ndarray) or rubs.shape[1:] != (5,) or rubs.dtype != np.float64:
+        raise argument_error(f"{name}.rubs", getattr(rubs, "shape", rubs), "an array of float64 of shape (pairs, 5)")
     if np.may_share_memory(state.x, state.v):
         raise argument_error(f"{name}.v", f"the memory of {name}.x", "an array of its own")
 

@@ -137,6 +137,10 @@ REFUSED: list[Row] = [
     ("state.x", too_many_points(velocities), ""),
     ("state.v", lambda: advanced(rope(4), State(rope(4).x0.copy(), np.zeros((3, 1, 5)))), ""),
     ("state.v", lambda: advanced(rope(4), State(rope(4).x0.copy(), np.zeros((3, 1, 4), np.float32))), ""),
+    *(
+        ("state.rubs", lambda rubs=rubs: advanced(rope(4), dataclasses.replace(State.at_rest(rope(4)), rubs=rubs)), "")
+        for rubs in (None, np.zeros((2, 3)), np.zeros(5), np.zeros((1, 5), np.float32))
+    ),
     *each(partial(critical_step, rope()), integrator=["rk5"]),
     ("integrator", lambda: critical_stiffness(rope(), "", 0.1), "leapfrog"),
     *each(partial(critical_stiffness, rope(), "rk4"), h=[0.0, -1.0, math.nan, math.inf, True]),

@@ -414,9 +414,10 @@ def landed_modes(net: Net, modes: list[Mode]) -> list[Mode]:
     """Estimates of a net's top modes where all of its points touch floor or sphere.
 
     modes: `top_modes` of a state. A contact adds to a mode's omega^2 and damping rate at most those of the lightest
-    point (Weyl's inequality), less what the mode has of contact already; of what slides it adds friction instead. A
-    light point that is hardly linked swings on its contact alone. Faces of a cloth, which a small sphere touches
-    between its points, are left out. Empty without floor and sphere.
+    point (Weyl's inequality), less the stiffness that the mode has beside its links. That is taken for contact with
+    floor or sphere, also where it is of the net with itself or of a grab: there the estimate may be too long. Of what
+    slides, contact adds friction instead. A light point that is hardly linked swings on its contact alone. Faces of a
+    cloth, which a small sphere touches between its points, are left out. Empty without floor and sphere.
     """
     surfaces = max(net.floor is not None, (net.sphere is not None) * (2.0 if net.links_touch else 1.0))
     lightest = float(net.inverse_masses().max(initial=0.0))
@@ -654,7 +655,7 @@ def gauge(
     """
     modes = modes_at(net, state) if modes is None else modes
     motion, record = motion_at(net, state) if motion is None else motion, integrator_named(integrator)
-    # Explicit Euler's limit, a guide already, follows the least damped mode: that of a contact would tell nothing.
+    # Explicit Euler's limit depends on the least damped mode, which is not among these estimates.
     estimates = landed_modes(net, modes) if record.limit(0.0) > 0.0 else []
     landed = min((step_limit(mode, record) for mode in estimates), default=math.inf)
     return gauge_of(modes, record, h, motion)._replace(landed_step=landed)

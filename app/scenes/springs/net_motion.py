@@ -22,7 +22,7 @@ class SolverReport(NamedTuple):
     """Steps since the method and the step were chosen, and failures in them."""
 
     steps: int = 0
-    unsettled: int = 0  # of an implicit method: steps whose solver had not settled; of another: kicks
+    unsettled: int = 0  # steps of an implicit method, or kicks of another one, whose solver had not settled
     slowed: int = 0  # steps in which parts that touch were slowed down to keep them apart
     implicit: bool = False
 

@@ -188,8 +188,8 @@ def is_near_enough(x, p, q):
     return p.closing[kind] > left and closing_since_list(x, p, four_in_list(p, q), kind) > left
 
 
-# Note where a step ends, for `pairs_of_step`: (number of pairs in the list of those that may meet in the step, False if
-# the step is too long for the list's room); and False of a pair that cannot.
+# `note_end` notes the positions x at the end of the step. `pairs_of_step` returns the number of listed pairs, which may
+# meet in it, and False if the step is too long for the list. `is_worth_a_look` is False if a pair cannot meet in it.
 note_end = by_touch(chain=kernel(lambda x, p: None, inline=True), cloth=set_closing)
 pairs_of_step = by_touch(chain=pairs_of_chain, cloth=pairs_of_cloth)
 is_worth_a_look = by_touch(chain=kernel(lambda x, p, q: True, inline=True), cloth=is_near_enough)

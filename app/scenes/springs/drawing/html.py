@@ -28,7 +28,7 @@ STEP_INFO = (
     "frequency and decay of the motion that gravity causes are off by at most {}."
 )
 WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
-MUCH_SHORTER = 0.75  # of the largest stable step, below which that in contact is worth a word
+MUCH_SHORTER = 0.75  # of the largest stable step, below which the step in contact is shown too
 UNLIMITED = 2.0  # steps that are right, in the length of the bar of a method that is stable at every step
 
 

@@ -187,7 +187,7 @@ def test_a_click_on_the_map_sets_step_and_stiffness(shown: tuple[Viewer, Tab]) -
     tab.page.get_by_text("Stability map", exact=True).first.click()
     picture = tab.page.locator("svg.springtide-map")
     picture.hover(timeout=60_000)  # scrolls, and waits until the folder has unfolded
-    unit = picture.bounding_box()["width"] / live.PICTURE[0]
+    unit = tab.wait(picture.bounding_box)["width"] / live.PICTURE[0]  # none while a page replaces the picture
     x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
     params = lab.settings.params
     picture.click(position={"x": unit * x, "y": unit * y}, timeout=60_000)

@@ -32,7 +32,18 @@ from numba.extending import intrinsic, overload
 
 from sim.cache import own_folder, processor, shared_kernels
 
-__all__ = ["CACHE", "MAX_THREADS", "chosen", "generated", "is_stopped", "kernel", "modules_of", "prange", "set_threads"]
+__all__ = [
+    "CACHE",
+    "MAX_THREADS",
+    "chosen",
+    "compile_ahead",
+    "generated",
+    "is_stopped",
+    "kernel",
+    "modules_of",
+    "prange",
+    "set_threads",
+]
 
 ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
@@ -283,6 +294,18 @@ def kernel(
         folders = COMPILER.Folders(folder, tuple(other / folder_name(path) for other in SHARED))
     with kept_in(place):
         return COMPILER.make_kernel(function, folders, options, noalias=noalias, counts=allocates and not inline)
+
+
+def compile_ahead(kernel: Any, *arguments: Any) -> Any:
+    """Compile a kernel for calls by other kernels, ahead of the first one.
+
+    arguments: values of the types of the call. Returns a stand-in for the result, as an argument of the next such call.
+    Does nothing where kernels are compiled in numba's own way.
+    """
+    if COMPILER is None:
+        return None
+    types = (one if isinstance(one, numba.types.Type) else numba.typeof(one) for one in arguments)
+    return kernel.compile_part(tuple(types))
 
 
 def generated(source: str, names: dict[str, Any], module: str, **options: Any) -> Any:

@@ -44,13 +44,7 @@ from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.integrators import Integrator, discover, integrator_named
-from sim.springs.integrators.implicit.tangent import (
-    has_friction,
-    quotients,
-    set_lanczos,
-    set_products,
-    set_tangent,
-)
+from sim.springs.integrators.implicit.tangent import has_friction, lanczos, products, quotients
 from sim.springs.laws import largest_stiffness
 from sim.springs.near.near_pairs import count_touching
 from sim.springs.net import Net
@@ -262,13 +256,10 @@ def ritz(
     """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x and `stiff` times STIFFEST; their
     vectors are the columns of the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
     raise_if_stopped()
-    basis = np.zeros((min(VECTORS, x.size), x.size))
-    basis[0] = start
-    diagonal, beside = np.zeros((2, len(basis)))
-    filled = set_lanczos(x, t, p, part, stiff, basis, diagonal, beside)
-    across = np.diag(beside[: filled - 1], 1)
-    values, vectors = np.linalg.eigh(np.diag(diagonal[:filled]) + across + across.T)
-    return values, vectors, basis[:filled]
+    basis, diagonal, beside = lanczos(x, start, t, p, part, stiff, min(VECTORS, x.size))
+    across = np.diag(beside, 1)
+    values, vectors = np.linalg.eigh(np.diag(diagonal) + across + across.T)
+    return values, vectors, basis
 
 
 def top_vector(
@@ -291,7 +282,7 @@ def stiff_vectors(
     values, vectors, basis = ritz(x, start, t, p, STIFFEST)
     modes = vectors.T @ basis
     if not isinstance(p, LineArrays):
-        stiffness, _, rate, _ = quotients(x, modes[-1], t, p)
+        stiffness, _, rate, _ = quotients(x, modes[-1:], t, p)[0]
         if rate * rate < 4.0 * DAMPED * DAMPED * stiffness:
             return modes[-1], []
     return modes[-1], [u for u, value in zip(modes[:-1], values, strict=False) if value > STIFF * values[-1]]
@@ -306,13 +297,13 @@ def mixed_vectors(
     the fastest mode beyond it, which every explicit method's limit hangs on: s^2 M u + s D u + K u = 0 of a real s =
     -mu says that mu is an eigenvalue of D - K/mu, the largest one; its Rayleigh quotient rises towards it.
     """
-    stiffness, rate = quotients(x, stiffest, t, p)[0], quotients(x, damped, t, p)[2]
+    (stiffness, *_), (_, _, rate, _) = quotients(x, np.stack([stiffest, damped]), t, p)
     if stiffness <= 0.0 or rate <= 0.0 or abs(stiffest @ damped) > SAME:
         return []
     both = stiffest + damped
     vectors = [top_vector(x, both / np.linalg.norm(both), t, p, DAMPING, rate / stiffness)]
     for _ in range(ROUNDS):
-        stiffness, _, rate, _ = quotients(x, damped, t, p)
+        stiffness, _, rate, _ = quotients(x, damped[None], t, p)[0]
         root = 0.5 * rate + math.sqrt(max(0.25 * rate * rate - stiffness, 0.0))
         if root <= 0.0:
             break
@@ -325,8 +316,7 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
 
     The stiffest mode of all may be normal to the surface, where friction does not act.
     """
-    begin = np.empty_like(x)
-    set_tangent(x, start, t, p, FRICTION, 0.0, begin)
+    begin = products(x, start[None], t, p, FRICTION)[0]
     if not begin.any():
         return None
     values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFEST)
@@ -334,7 +324,7 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
     for value, mode in zip(values[::-1], vectors.T[::-1] @ basis, strict=True):
         if value <= largest:
             break  # no mode slides by more than all of it
-        slides = value * quotients(x, mode, t, p)[3]
+        slides = value * quotients(x, mode[None], t, p)[0, 3]
         if slides > largest:
             vector, largest = mode, slides
     return vector
@@ -378,7 +368,7 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
         slides = sliding_vector(flat, start, t, p)
         if slides is not None:
             vectors.append(slides)
-    properties = [quotients(flat, u, t, p) for u in vectors + mixed]
+    properties = quotients(flat, np.stack(vectors + mixed), t, p).tolist()
     # Across slack links the stiffness is only round-off: no frequency is better than a wrong one.
     floor = 1e-12 * abs(properties[0][0])
     return [
@@ -499,9 +489,7 @@ def moved_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: fl
         if not len(smooth):
             return STILL
         shapes = np.kron(np.eye(3), smooth)
-    stiff, damped = np.empty_like(shapes), np.empty_like(shapes)
-    set_products(flat, shapes, t, p, STIFFEST, stiff)
-    set_products(flat, shapes, t, p, DAMPING, damped)
+    stiff, damped = (products(flat, shapes, t, p, part) for part in (STIFFEST, DAMPING))
     span = float(np.ptp(x.reshape(3, -1), axis=1).max())
     return motion_of(shapes, stiff, damped, loads, math.hypot(p.gx, p.gy, p.gz) / span if span > 0.0 else 0.0)
 

@@ -1,5 +1,6 @@
 """Parts and entries: what a kernel becomes when kernels call it, and when Python does."""
 
+import gc
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -8,7 +9,7 @@ import pytest
 
 from sim import jit
 from sim.compiler import with_room
-from sim.jit import chosen, kernel
+from sim.jit import chosen, compile_ahead, kernel
 from tests.fresh import python
 
 with pytest.MonkeyPatch.context() as patch:
@@ -104,6 +105,35 @@ def test_a_kernel_that_only_kernels_call_is_no_machine_code_of_its_own():
 def test_constant_arguments_make_no_further_parts():
     assert all_shifted(3.0) == 3.0
     assert compiled_parts(shifted) == 1
+
+
+def test_what_is_compiled_ahead_is_what_callers_find():
+    """Of plain numbers, of a record, and of a result."""
+    aside = kernel(signed.py_func)
+    side = compile_ahead(aside, 3.0, True)
+    assert compile_ahead(area, Square(3.0), side) == side == compile_ahead(aside, side, False)
+    assert compiled_parts(aside) == compiled_parts(square_area) == 1
+    assert not aside.signatures
+    assert double_area(Square(3.0)) == 18.0
+    assert compiled_parts(square_area) == 1
+
+
+def test_no_garbage_is_looked_for_while_a_kernel_is_compiled():
+    """Only afterwards, at the first chance, and after a failure too."""
+    one, other, fails, rounds = kernel(shifted.py_func), kernel(shifted.py_func), kernel(first.py_func), []
+    gc.collect()
+    gc.callbacks.append(count := lambda phase, _: rounds.append(phase) if phase == "start" else None)
+    try:
+        one(1.0, 2, True)
+        compile_ahead(other, 1.0, 2, True)
+        during = len(rounds)
+    finally:
+        gc.callbacks.remove(count)
+    assert during <= 2
+    assert gc.isenabled()
+    with pytest.raises(TypeError):
+        fails(np.ones(3))
+    assert gc.isenabled()
 
 
 def test_the_type_of_a_record_chooses_the_kernel_and_the_others_are_not_compiled():

@@ -8,7 +8,6 @@ that needs it.
 
 import collections
 import functools
-import gc
 import os
 import subprocess
 import sys
@@ -82,15 +81,8 @@ def compile_job(job: Job) -> None:
     """Compile one piece, and remember it."""
     name, piece, drawn = job
     kind = scene_named(name)
-    # A compiler makes many objects that stay: looking through all of them again and again takes a fifth of the time.
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        pieces = view_named(name).WARM_UP if drawn else {**kind.warm_up_on_use(), **kind.warm_up()}
-        pieces[piece]()
-    finally:
-        if was_enabled:
-            gc.enable()
+    pieces = view_named(name).WARM_UP if drawn else {**kind.warm_up_on_use(), **kind.warm_up()}
+    pieces[piece]()
     keep(mark_of(job))
     # The drawing, and with it viser, is asked only where all else is compiled.
     if all(map(is_marked, all_jobs(name, drawn=False))) and all(map(is_marked, all_jobs(name))):

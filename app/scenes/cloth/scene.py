@@ -22,7 +22,7 @@ from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from app.scenes.springs.warmup import GAUGE, integrator_pieces
+from app.scenes.springs.warmup import GAUGE, integrator_pieces, pieces_of_methods
 from sim.springs import Air, Net, cloth
 from sim.springs.analysis.accuracy import STILL
 from sim.springs.analysis.extremes import Extremes, extremes
@@ -63,8 +63,8 @@ def gusty_wind(params: ClothParams, t: float) -> Vector:
 def warm_up(law: str = SPRING) -> Pieces:
     """Everything to compile that the scene may call with links of a law."""
     net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1, law=law)
-    gauge = functools.partial(compile_gauge, law)
-    return {GAUGE: gauge, **integrator_pieces(net, cloth(4, 4, damping=0.0, law=law))}
+    methods = integrator_pieces(net, cloth(4, 4, damping=0.0, law=law))
+    return {**methods, GAUGE: functools.partial(compile_gauge, law)}
 
 
 def compile_gauge(law: str) -> None:
@@ -77,7 +77,7 @@ def compile_gauge(law: str) -> None:
 def needs(params: ClothParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = method_that_runs(params.integrator, params.time_step, lambda: build(small(params), sphere_home(params)))
-    return pieces_of_law((method, GAUGE), params.law)
+    return pieces_of_law((*pieces_of_methods([method]), GAUGE), params.law)
 
 
 def small(params: ClothParams) -> ClothParams:

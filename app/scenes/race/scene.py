@@ -19,7 +19,7 @@ from app.scenes.springs.laws import SPRING, pieces_of_law
 from app.scenes.springs.net_motion import NetMotion
 from app.scenes.springs.rope_handles import RopeHandles, grab_spring, offset_of
 from app.scenes.springs.rope_parameters import build_rope
-from app.scenes.springs.warmup import GAUGE, integrator_pieces
+from app.scenes.springs.warmup import GAUGE, integrator_pieces, pieces_of_methods
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.analysis.reference_run import ReferenceRun
 
@@ -45,7 +45,7 @@ def warm_up(law: str = SPRING) -> Pieces:
     net = rope(4, floor=-1.0, law=law)
     methods = integrator_pieces(net, rope(4, damping=0.0, drag=0.0, law=law))
     of_net = {GAUGE: compile_gauge, REFERENCE: compile_reference}
-    return {**{piece: functools.partial(function, net) for piece, function in of_net.items()}, **methods}
+    return {**methods, **{piece: functools.partial(function, net) for piece, function in of_net.items()}}
 
 
 def compile_gauge(net: Net) -> None:
@@ -61,7 +61,7 @@ def compile_reference(net: Net) -> None:
 def needs(params: RaceParams) -> tuple[str, ...]:
     """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
-    return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.law)
+    return pieces_of_law((*pieces_of_methods(sorted(methods)), GAUGE, REFERENCE), params.law)
 
 
 class RaceScene:

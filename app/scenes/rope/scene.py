@@ -22,7 +22,7 @@ from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.rope_handles import RopeHandles, grab_spring
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
-from app.scenes.springs.warmup import GAUGE, integrator_pieces
+from app.scenes.springs.warmup import GAUGE, integrator_pieces, pieces_of_methods
 from sim.springs import LAWS, Net, rope
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.tension import rope_tension
@@ -80,7 +80,7 @@ def warm_up(law: str = SPRING, *, touching: bool = False) -> Pieces:
     rope_of = functools.partial(rope, 4, law=law, radius=ROPE_RADIUS, self_contact=touching)
     net = rope_of(floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
     methods = integrator_pieces(net, rope_of(damping=0.0, drag=0.0))
-    return {GAUGE: functools.partial(compile_gauge, law, touching), **methods}
+    return {**methods, GAUGE: functools.partial(compile_gauge, law, touching)}
 
 
 def pieces_of_touch(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -107,7 +107,7 @@ def compile_gauge(law: str, touching: bool) -> None:
 def needs(params: RopeParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = method_that_runs(params.integrator, params.time_step, lambda: build(small(params)))
-    names = pieces_of_law((method, GAUGE), params.law)
+    names = pieces_of_law((*pieces_of_methods([method]), GAUGE), params.law)
     return pieces_of_touch(names) if params.self_contact else names
 
 

@@ -27,7 +27,7 @@ from tests.sim.springs.analysis.test_energy import PATH, residual
 from tests.sim.springs.forces.test_forces import agrees, own_power, shaken
 from tests.sim.springs.nets import DAMPABLE
 from tests.sim.springs.reference import exact, integrated, slope
-from tests.sim.springs.test_stability import products
+from tests.sim.springs.test_stability import tangent_matrix
 
 K, REST = 700.0, 0.4
 STRAINS = np.array([-0.7, -0.2, -1e-3, 1e-3, 0.05, 0.3, 1.5])
@@ -120,8 +120,8 @@ def test_tangents_are_the_derivatives_of_the_forces(name, model):
     net = rope(9, damping_model=model, law=name)
     x, _ = shaken(net)
     stiff, damping = naive.tangent(net, x)
-    assert products(net, x, STIFFNESS) == pytest.approx(stiff, rel=1e-5, abs=1e-5 * np.abs(stiff).max())
-    assert products(net, x, DAMPING) == pytest.approx(damping, rel=1e-6, abs=1e-6 * np.abs(damping).max())
+    assert tangent_matrix(net, x, STIFFNESS) == pytest.approx(stiff, rel=1e-5, abs=1e-5 * np.abs(stiff).max())
+    assert tangent_matrix(net, x, DAMPING) == pytest.approx(damping, rel=1e-6, abs=1e-6 * np.abs(damping).max())
 
 
 @pytest.mark.parametrize(("name", "method"), [("slack", "leapfrog"), ("stiffening", "leapfrog"), ("stiffening", "rk4")])

@@ -8,7 +8,7 @@ from sim.springs import INTEGRATORS, rope
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.state import State, advance, velocities
 from sim.springs.statics import equilibrium
-from tests.sim.springs.test_stability import products
+from tests.sim.springs.test_stability import tangent_matrix
 
 LAB = rope(10, gravity=10.0)
 LONGITUDINAL = (  # [rad/s] of nine moving points, fixed and free, k = 800 N/m, m = 1 kg
@@ -27,7 +27,7 @@ def hanging(net):
 def mode_shapes(net, x, axis):
     """Squared frequencies and shapes (moving points, modes) of motions along one axis."""
     n = net.shape[1]
-    block = products(net, x, STIFFNESS)[axis * n + 1 : (axis + 1) * n, axis * n + 1 : (axis + 1) * n]
+    block = tangent_matrix(net, x, STIFFNESS)[axis * n + 1 : (axis + 1) * n, axis * n + 1 : (axis + 1) * n]
     return np.linalg.eigh(block)
 
 
@@ -101,7 +101,7 @@ def test_only_isotropic_damping_reaches_motion_across_the_rope(model):
     net = rope(10, drag=0.0, damping_model=model)
     _, shapes = mode_shapes(net, hanging(net).x, 0)
     n = net.shape[1]
-    damping = products(net, hanging(net).x, DAMPING)[1:n, 1:n]
+    damping = tangent_matrix(net, hanging(net).x, DAMPING)[1:n, 1:n]
     rates = np.diag(shapes.T @ damping @ shapes)
     if model == "axial":
         assert np.abs(rates).max() == 0.0
@@ -112,7 +112,7 @@ def test_only_isotropic_damping_reaches_motion_across_the_rope(model):
 def test_a_taut_rope_has_the_string_s_frequencies():
     """omega = 2 sqrt(T/(m a)) sin(j pi/(2 (n + 1))) across, 2 sqrt(k/m) sin(...) along, of n points between pins."""
     net = rope(12, 2.0, 0.3, 500.0, gravity=0.0, end=(2.5, 0.0, 0.0))
-    squared = np.linalg.eigvalsh(products(net, net.x0, STIFFNESS))[6:]
+    squared = np.linalg.eigvalsh(tangent_matrix(net, net.x0, STIFFNESS))[6:]
     j = np.arange(1, 11)
     sine = 2.0 * np.sin(j * math.pi / 22.0) ** 1
     spacing, tension = 2.5 / 11, 500.0 * 0.5 / 11

@@ -10,6 +10,7 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.forces import each
@@ -139,12 +140,8 @@ def set_lanczos(x, t, p, part, stiff, basis, diagonal, beside):
 
 
 @kernel(noalias=True)
-def quotients(x, y, t, p):
-    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector y = M^1/2 u, 0 where
-    pinned.
-
-    The fourth is the share of u M u that slides on floor or sphere, 0 without friction.
-    """
+def quotients_of(x, y, t, p):
+    """A row of `quotients`."""
     u, w = np.empty_like(x), np.empty_like(x)
     longest = longest_strain(x, p)
     set_masses(x, p)
@@ -162,3 +159,54 @@ def quotients(x, y, t, p):
         set_tangent(x, y, t, p, FRICTION, longest, w)
         sliding = dot(y, w)
     return stiffness, links, rate, sliding
+
+
+PRODUCTS, LANCZOS, QUOTIENTS = 0, 1, 2
+
+
+@kernel(noalias=True)
+def analyse(what, x, t, p, part, stiff, vectors, out):
+    """`set_products`, `set_lanczos` with out[:2], or `quotients_of` each vector; returns how many vectors are set.
+
+    One kernel, since what Python calls is compiled with the code of all forces.
+    """
+    if what == LANCZOS:
+        return set_lanczos(x, t, p, part, stiff, vectors, out[0], out[1])
+    if what == PRODUCTS:
+        set_products(x, vectors, t, p, part, out)
+    else:
+        for i in range(vectors.shape[0]):
+            out[i, 0], out[i, 1], out[i, 2], out[i, 3] = quotients_of(x, vectors[i], t, p)
+    return vectors.shape[0]
+
+
+def products(x: NDArray[np.float64], vectors: NDArray[np.float64], t: float, p: Any, part: int) -> NDArray[np.float64]:
+    """The products of a part of the tangent about x (3 rows cols,) and of vectors (count, 3 rows cols)."""
+    found = np.empty_like(vectors)
+    analyse(PRODUCTS, x, t, p, part, 0.0, vectors, found)
+    return found
+
+
+def lanczos(
+    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int, stiff: float, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Lanczos from the unit vector `start` (3 rows cols,), of at most `count` rows.
+
+    Returns the orthonormal rows Q (m, 3 rows cols), and diagonal (m,) and side diagonal (m - 1,) of T = Q^T A Q, where
+    A is `part` of the tangent about x and `stiff` times part STIFFEST.
+    """
+    basis, sides = np.zeros((count, x.size)), np.zeros((2, count))
+    basis[0] = start
+    filled = analyse(LANCZOS, x, t, p, part, stiff, basis, sides)
+    return basis[:filled], sides[0, :filled], sides[1, : filled - 1]
+
+
+def quotients(x: NDArray[np.float64], vectors: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64]:
+    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s] (count, 4), of unit vectors y = M^1/2 u
+    (count, 3 rows cols), 0 where pinned.
+
+    The fourth is the share of u M u that slides on floor or sphere, 0 without friction.
+    """
+    found = np.empty((len(vectors), 4))
+    analyse(QUOTIENTS, x, t, p, 0, 0.0, vectors, found)
+    return found

@@ -56,6 +56,34 @@ for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset])
 """
 )
 
+# With an empty cache. The number of parts that are compiled for kicks, and those that the method compiles again.
+TWICE = """
+from numba.core import event
+from app.scenes.springs.warmup import compile_kicks, integrator_pieces
+from sim.compiler import Part
+from sim.springs import rope
+
+class Compiled(event.Listener):
+    def __init__(self):
+        self.parts = []
+
+    def on_start(self, event):
+        if isinstance(event.data["dispatcher"], Part):
+            function = event.data["dispatcher"].py_func
+            self.parts.append((function.__module__, function.__qualname__, str(event.data["args"])))
+
+    def on_end(self, event):
+        pass
+
+net, compiled = rope(4), Compiled()
+event.register("numba:compile", compiled)
+compile_kicks(net)
+count = len(compiled.parts)
+integrator_pieces(net, net)["leapfrog"]()
+print(count, *{name for _, name, _ in {*compiled.parts[:count]} & {*compiled.parts[count:]}})
+print("sim.springs.kicks.kick kick_whole" in {f"{module} {name}" for module, name, _ in compiled.parts[:count]})
+"""
+
 # With an empty cache: what is loaded has no signatures of what it calls.
 BEFORE_THE_FIRST_FRAME = f"""{SIGNATURES}
 from app.scenes.ahead.compiling import compile_job, uncompiled
@@ -65,6 +93,15 @@ for job in uncompiled("cloth", ClothParams()):
     compile_job(job)
 print(*sorted({{module for module, _, _ in signatures()}}))
 """
+
+
+@pytest.mark.long  # compiles with an empty cache
+def test_kicks_that_are_compiled_apart_are_those_of_their_method(tmp_path: Path) -> None:
+    parts, has_kick = python(TWICE, SPRINGTIDE_CACHE=str(tmp_path)).splitlines()
+    count, *twice = parts.split()
+    assert int(count) > 50
+    assert has_kick == "True"
+    assert twice == []
 
 
 @pytest.mark.long  # compiles with an empty cache

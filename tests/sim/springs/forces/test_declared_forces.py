@@ -15,7 +15,7 @@ from sim.springs import Net, cloth, rope, simulate
 from sim.springs.forces import OWN, Force
 from sim.springs.forces.matrices import STIFFNESS
 from sim.springs.integrators.implicit.blocks import set_point_blocks
-from sim.springs.integrators.implicit.tangent import set_tangent
+from sim.springs.integrators.implicit.tangent import products
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.stability import gershgorin
 from sim.springs.state import State, energy
@@ -89,14 +89,13 @@ def test_the_tangent_is_the_slope_of_the_force_and_the_blocks_hold_it(numbers, n
     n, free = x[0].size, np.tile(net.inverse_masses() > 0.0, 3)
     root = np.sqrt(np.tile(net.masses.ravel(), 3))
     expected = np.empty((x.size, x.size))
-    found, blocks = np.empty((2, x.size, x.size)), np.zeros((2, 6 * n))
+    found, blocks = [], np.zeros((2, 6 * n))
     for i in range(x.size):
         low, high = moved(x, i)
         expected[i] = (force(numbers, net, low) - force(numbers, net, high)) / (2.0 * D)
     for k, each in enumerate(with_and_without(numbers, net)):
         p = each.kernel_view(1.0)
-        for i, unit in enumerate(np.eye(x.size)):
-            set_tangent(x.reshape(-1), unit * root, 0.0, p, STIFFNESS, 0.0, found[k, i])
+        found.append(products(x.reshape(-1), np.diag(root), 0.0, p, STIFFNESS))
         set_point_blocks(x.reshape(-1), np.zeros(x.size), 0.0, 1.0, p, blocks[k])
     stiffness = (found[0] - found[1]) * root
     both = np.ix_(free, free)

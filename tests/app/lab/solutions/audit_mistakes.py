@@ -336,7 +336,11 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
     ("wave_decay", "squared", "return amplitude * np.exp(-2 * viscosity * wavenumber * time)"),
     ("wave_decay", "grows", "return amplitude * np.exp(2 * viscosity * wavenumber ** 2 * time)"),
     ("jet_landing", "level", changed(JET, "(x[2] - level)", "x[2]")),
-    ("jet_landing", "2 * gravity|2 * (gravity|half", changed(JET, "2 * gravity * (x[2] - level)", "gravity * (x[2] - level)")),
+    (
+        "jet_landing",
+        "2 * gravity|2 * (gravity|half",
+        changed(JET, "2 * gravity * (x[2] - level)", "gravity * (x[2] - level)"),
+    ),
     ("rain_hit", "start below|z0 > level0", changed(RAIN, "z0[i] > level0[i] and ", "")),
     ("rain_hit", "infinity", changed(RAIN, "np.full(len(z0), np.inf)", "np.zeros(len(z0))")),
     ("mesh_volume", "sixth", changed(VOLUME, "total / 6", "total / 2")),

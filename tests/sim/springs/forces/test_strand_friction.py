@@ -170,7 +170,9 @@ def over_a_strand(friction, speed):
     return dataclasses.replace(net, x0=placed(x), pinned=pinned, pin_paths=(((0, 4), pin),)), len(pinned)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.2, 0.4])
+@pytest.mark.parametrize(
+    "friction", [0.4, pytest.param(0.0, marks=pytest.mark.long), pytest.param(0.2, marks=pytest.mark.long)]
+)
 def test_a_strand_that_slips_over_another_has_the_tensions_of_the_capstan(friction):
     """exp(mu theta) on half a turn, on a polygon of 12 links, to 1.5 %."""
     net, first = over_a_strand(friction, 0.03)

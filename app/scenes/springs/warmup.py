@@ -13,14 +13,15 @@ from sim.springs.kicks.kick import kick, make_kick_room
 
 WARM_UP_STEP = 1e-4  # [s]
 GAUGE = "stability gauge"  # name of the piece that every scene of springs needs
-KICKED = "leapfrog"  # the method whose kicks are a piece of their own
+KICKED = "leapfrog"  # the method whose kicks are compiled separately
 KICKS = f"kicks of {KICKED}"
 
 
 def integrator_pieces(net: Net, undamped: Net) -> Pieces:
     """Two steps of each method, with the energy account. undamped: for those that accept no damping.
 
-    The kicks of leapfrog are a piece of their own, which another process can compile beside the rest of the method.
+    Leapfrog takes long to compile, so its kicks are a separate piece. They come first and a scene's gauge last: of two
+    workers one compiles the kicks and then the gauge, the other the rest of leapfrog.
     """
     methods = {
         name: functools.partial(

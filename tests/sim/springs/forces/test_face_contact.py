@@ -234,7 +234,7 @@ def test_the_blocks_of_an_implicit_step_resist_no_less_than_the_contacts():
 
 
 def test_gershgorin_bounds_a_point_that_is_pushed_through_all_its_faces():
-    """Where eight triangles meet, contact is five times as stiff as that of the particle alone."""
+    """Contact five times as stiff as that of the particle alone, at a point where eight triangles meet."""
     net = cloth(5, 5, 0.4, 0.4, stiffness=0.0, shear=0.0, bend=0.0, damping=0.0, pinned="free")
     x = net.x0.copy()
     x[2, 1, 2] -= 0.05
